@@ -17,7 +17,8 @@ import pages  # noqa: E402
 import drystone  # noqa: E402
 
 project, author, release = "Drystone", "the Drystone developers", drystone.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
 html_theme = "furo"

@@ -119,5 +119,34 @@ def _one_line(text: str | None) -> str:
     return " ".join((text or "").split()).replace("|", "\\|").replace("$", "\\$")
 
 
-ALL = (command_pages, columns_page, settings_page, case_page)
+def licences_page(folder: Path) -> None:
+    """The packages that the locks hold, with their licences as they state them."""
+    from importlib.metadata import PackageNotFoundError, metadata
+
+    root = Path(__file__).resolve().parent.parent
+    parts = ["# Licences of other packages", "", "Drystone has the MIT licence and contains no code of others."]
+    for sentence, lock in (
+        ("Installed for the main job:", "requirements.lock"),
+        ("Installed for the tests as well:", "requirements-tests.lock"),
+    ):
+        names = dict.fromkeys(re.findall(r"^([\w.-]+)==", (root / lock).read_text(encoding="utf-8"), re.MULTILINE))
+        parts += ["", sentence, "", "| package | version | licence |", "|---|---|---|"]
+        for name in names:
+            try:
+                told = metadata(name)
+            except PackageNotFoundError:  # it is for another system or version of Python
+                continue
+            parts.append(f"| {name} | {told['Version']} | {_licence(told)} |")
+    (folder / "licences.md").write_text("\n".join(parts) + "\n", encoding="utf-8")
+
+
+def _licence(told: Any) -> str:
+    """The licence that a package states, in a few words."""
+    stated = told.get("License-Expression")
+    marks = [mark.rsplit(" :: ", 1)[-1] for mark in told.get_all("Classifier") or () if mark.startswith("License ::")]
+    first = _one_line((told.get("License") or "").strip().split("\n")[0])
+    return _one_line(stated or ", ".join(marks) or first[:80] or "not stated")
+
+
+ALL = (command_pages, columns_page, settings_page, case_page, licences_page)
 """Every writer of a page."""

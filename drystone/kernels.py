@@ -6,7 +6,7 @@ import sys
 
 from drystone.walls import Wall, new_wall
 from harness.engine.preload import shipped
-from harness.model.errors import InputError
+from harness.model.errors import InputError, MissingPackage
 from harness.model.library import library
 from harness.model.method import Method, load_method, method_names, prepared
 
@@ -25,9 +25,11 @@ def main() -> None:
 
 
 def _ready(name: str) -> Method | None:
-    """The method with all that it needs; None if that is not there."""
+    """The method with all that it needs; None if that is not there. A package that an extra brings may be missing."""
     try:
         return prepared(load_method(name))
+    except MissingPackage:
+        return None
     except InputError as error:
         print(error, file=sys.stderr)
         return None

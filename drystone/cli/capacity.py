@@ -10,6 +10,7 @@ import click
 from drystone.capacity_curve import capacity as curve_of
 from drystone.cli.options import (
     OUTPUT,
+    case_argument,
     cases_option,
     catching,
     check_table_or_figure,
@@ -24,7 +25,7 @@ from harness.engine.plan import find_cases
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @click.option("--block", help="Id of the block whose centroid is the control point.  [default: the live load's mean]")
 @click.option("-o", "--output", type=OUTPUT, help="Also draw or list the curve: .pdf, .svg, .png or .csv.")
 @json_flag

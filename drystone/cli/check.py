@@ -14,6 +14,7 @@ from drystone.cli import terminal
 from drystone.cli.junit import tests_of_check, write_junit
 from drystone.cli.options import (
     OUTPUT,
+    cases_argument,
     cases_option,
     catching,
     fresh_flag,
@@ -34,7 +35,7 @@ from harness.model.errors import InputError
 
 
 @click.command()
-@click.argument("cases", nargs=-1)
+@cases_argument
 @click.option("--suite", help="A suite of cases.  [default: all cases, or those of --cases]")
 @click.option("--tier", type=click.Choice(["quick", "full"]), default="quick", show_default=True)
 @jobs_option
@@ -84,7 +85,7 @@ def check(
 
 @click.command()
 @click.argument("action", type=click.Choice(["show", "update"]), default="show")
-@click.argument("cases", nargs=-1)
+@cases_argument
 @click.option("--suite", help="A suite of cases.  [default: all cases, or those of --cases]")
 @click.option("--reason", default="", help="The reason for an update; required.")
 @click.option("--file", "path", type=OUTPUT, help="The baseline.  [default: the one shipped]")

@@ -14,6 +14,7 @@ from drystone.cli.junit import tests_of_comparison, write_junit
 from drystone.cli.options import (
     as_loaded,
     both_signs_flag,
+    cases_argument,
     cases_option,
     catching,
     fresh_flag,
@@ -50,7 +51,7 @@ from harness.model.load_cases import load_cases_of
 
 
 @click.command()
-@click.argument("cases", nargs=-1)
+@cases_argument
 @click.option("--suite", help='A suite of cases, or "all".  [default: small]')
 @methods_option(f"{','.join(library().methods.compare)} and those gated")
 @click.option(

@@ -10,7 +10,7 @@ import click
 
 from drystone.cli import terminal
 from drystone.cli.methods import words_of
-from drystone.cli.options import catching, json_flag, print_json, say
+from drystone.cli.options import catching, json_flag, known_methods, print_json, say
 from harness.conformance import ConformanceCheck, conforms, suite
 from harness.engine.plan import check_methods
 from harness.engine.threads import pin
@@ -21,7 +21,7 @@ from harness.model.method import Method, load_method, prepared
 
 
 @click.command()
-@click.argument("methods", nargs=-1)
+@click.argument("methods", nargs=-1, shell_complete=known_methods)
 @click.option("--command", help='A program instead, as "prog {wall} {result}"; it is started without a shell.')
 @click.option("--lines", is_flag=True, help="With --command: it answers by lines on its standard streams.")
 @click.option("--describe", is_flag=True, help="With --command: it prints what it is when given --describe.")

@@ -9,11 +9,13 @@ import click
 
 from drystone.cli.options import (
     OUTPUT,
+    case_argument,
     cases_option,
     catching,
     check_table_or_figure,
     fresh_flag,
     json_flag,
+    known_methods,
     memory_option,
     pair,
     print_json,
@@ -30,8 +32,14 @@ from harness.engine.run import Limits
 
 
 @click.command()
-@click.argument("case")
-@click.option("--method", default="la-associated", show_default=True, help="An associated maximum gives the polygon.")
+@case_argument
+@click.option(
+    "--method",
+    shell_complete=known_methods,
+    default="la-associated",
+    show_default=True,
+    help="An associated maximum gives the polygon.",
+)
 @settings_option
 @click.option("--load-cases", metavar="A,B", help="Two load cases of the wall.  [default: those it has]")
 @click.option(

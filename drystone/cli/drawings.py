@@ -9,7 +9,17 @@ from pathlib import Path
 import click
 
 from drystone.cli import terminal
-from drystone.cli.options import INPUT_ERROR, OUTPUT, cases_option, catching, json_flag, print_json, say
+from drystone.cli.options import (
+    INPUT_ERROR,
+    OUTPUT,
+    case_argument,
+    cases_option,
+    catching,
+    json_flag,
+    known_methods,
+    print_json,
+    say,
+)
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.sensitivity import Plateau, advised, over_tolerance, suggested
 from harness.model.build import build
@@ -28,7 +38,11 @@ from harness.model.writing import write_whole
 @click.command()
 @click.argument("wall", type=click.Path(path_type=Path))
 @click.option(
-    "--method", default=library().methods.quick, show_default=True, help="That is asked once a set of joints."
+    "--method",
+    shell_complete=known_methods,
+    default=library().methods.quick,
+    show_default=True,
+    help="That is asked once a set of joints.",
 )
 @json_flag
 @catching
@@ -163,7 +177,7 @@ def _place(point: tuple[float, float] | None) -> str:
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @click.option("-o", "--output", type=OUTPUT, default=Path("wall.svg"), show_default=True)
 @click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
 @click.option("--axes/--no-axes", default=True, show_default=True, help="Coordinates of the file, and a scale.")

@@ -8,10 +8,12 @@ from pathlib import Path
 import click
 
 from drystone.cli.options import (
+    case_argument,
     cases_option,
     catching,
     fresh_flag,
     json_flag,
+    known_methods,
     memory_option,
     print_json,
     say,
@@ -27,8 +29,14 @@ from harness.engine.run import Limits
 
 
 @click.command()
-@click.argument("case")
-@click.option("--method", default="la", show_default=True, help="The method whose finding is taken: la, fe, de, ...")
+@case_argument
+@click.option(
+    "--method",
+    shell_complete=known_methods,
+    default="la",
+    show_default=True,
+    help="The method whose finding is taken: la, fe, de, ...",
+)
 @settings_option
 @click.option("--share", type=float, default=0.0, show_default=True, help="Multiple of the live load that acts too.")
 @click.option(

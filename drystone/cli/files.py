@@ -15,8 +15,10 @@ from drystone.cli.groups import AskingGroup
 from drystone.cli.options import (
     INPUT_ERROR,
     OUTPUT,
+    case_argument,
     cases_option,
     catching,
+    known_methods,
     say,
     say_json,
     settings_option,
@@ -103,8 +105,10 @@ def _write(text: str, output: Path | None) -> None:
 
 
 @click.command(epilog=_endings("writer", "holds"))
-@click.argument("case")
-@click.option("--method", help="Method whose answer is written too; the wall alone if absent.")
+@case_argument
+@click.option(
+    "--method", shell_complete=known_methods, help="Method whose answer is written too; the wall alone if absent."
+)
 @click.option("-o", "--output", type=OUTPUT, required=True, help="Its ending determines the format.")
 @settings_option
 @store_option

@@ -8,8 +8,10 @@ import click
 
 from drystone.cli.options import (
     as_loaded,
+    case_argument,
     cases_option,
     catching,
+    known_methods,
     load_case_option,
     memory_option,
     say,
@@ -25,9 +27,11 @@ from harness.engine.run import Limits
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @click.option("--vary", "names", multiple=True, required=True, metavar="NAME", help="A parameter; may be repeated.")
-@click.option("--method", default="la", show_default=True, help="The method that answers.")
+@click.option(
+    "--method", shell_complete=known_methods, default="la", show_default=True, help="The method that answers."
+)
 @settings_option
 @click.option("--port", type=click.IntRange(1, 65535), default=4242, show_default=True)
 @load_case_option

@@ -14,15 +14,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from harness.engine.run import LONGEST, MOST_MEMORY, Limits
-from harness.model.case import Case
+from harness.model.case import Case, case_folders, shipped_cases
 from harness.model.errors import InputError, visible
 from harness.model.fields import LARGEST
 from harness.model.json_text import MOST_SHOWN
 from harness.model.live_load import both_signs as signs_of
 from harness.model.live_load import is_horizontal, with_live_load
 from harness.model.load_cases import load_cases_of
+from harness.model.method import listed_methods
 from harness.model.writing import check_output, replacing
 
 if TYPE_CHECKING:
@@ -45,6 +47,22 @@ _REMEDIES = {
 
 INPUT_ERROR = 2
 _INTERRUPTED = 130
+
+
+def known_cases(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[CompletionItem]:
+    """What a shell offers for CASE: ids of the library that begin so, else files."""
+    ids = [name for name in case_folders([shipped_cases()]) if name.startswith(begun)]
+    return [CompletionItem(name) for name in ids] or [CompletionItem(begun, type="file")]
+
+
+def known_methods(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[CompletionItem]:
+    """What a shell offers for METHOD or the last of A,B: names of methods that begin so."""
+    before, comma, last = begun.rpartition(",")
+    return [CompletionItem(f"{before}{comma}{name}") for name in listed_methods() if name.startswith(last)]
+
+
+case_argument = click.argument("case", shell_complete=known_cases)
+cases_argument = click.argument("cases", nargs=-1, shell_complete=known_cases)
 
 
 def catching(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -156,6 +174,7 @@ def methods_option(default: str) -> Callable[[Callable[..., Any]], Callable[...,
         "methods",
         multiple=True,
         callback=_names,
+        shell_complete=known_methods,
         metavar="A,B,...",
         help=f"Names of methods, separated by commas.  [default: {default}]",
     )

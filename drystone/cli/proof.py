@@ -9,7 +9,7 @@ from typing import Literal
 import click
 
 from drystone.certificates import nearest, proved, read_certificate, write_certificate
-from drystone.cli.options import OUTPUT, cases_option, catching, finite, json_flag, print_json, say, warn
+from drystone.cli.options import OUTPUT, case_argument, cases_option, catching, finite, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
 from harness.engine.run import LONGEST
 from harness.model.errors import InputError
@@ -19,7 +19,7 @@ from methods.proof.verify.exact_wall import CertificateError
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @click.option("-o", "--output", type=OUTPUT, required=True, help="The certificate to write.")
 @click.option(
     "--nodes", type=click.IntRange(min=1), help="Limit for the tree; the default depends on the size of CASE."

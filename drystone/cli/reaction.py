@@ -10,6 +10,7 @@ import click
 
 from drystone.cli.options import (
     OUTPUT,
+    case_argument,
     cases_option,
     catching,
     check_table_or_figure,
@@ -34,7 +35,7 @@ SAID = {
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @click.option(
     "--without-dilatancy",
     is_flag=True,

@@ -13,10 +13,12 @@ from drystone.cli.options import (
     INPUT_ERROR,
     as_loaded,
     both_signs_flag,
+    case_argument,
     cases_option,
     catching,
     fresh_flag,
     json_flag,
+    known_methods,
     live_option,
     load_case_option,
     memory_option,
@@ -41,8 +43,8 @@ _SEVERITY = (INPUT_ERROR, 1, 3, 0)
 
 
 @click.command()
-@click.argument("method")
-@click.argument("case")
+@click.argument("method", shell_complete=known_methods)
+@case_argument
 @settings_option
 @load_case_option
 @live_option

@@ -9,6 +9,7 @@ import click
 
 from drystone.cli.options import (
     OUTPUT,
+    case_argument,
     cases_option,
     catching,
     check_table_or_figure,
@@ -28,7 +29,7 @@ from harness.model.ground_motion import GRAVITY
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @click.option("--pulse", metavar="G:S[,...]", help="Acceleration of the ground [g] and its duration [s], one or more.")
 @click.option("--motion", type=click.Path(path_type=Path), help="A CSV record instead, with time and acceleration.")
 @click.option("--multiple", type=float, default=1.0, show_default=True, callback=finite, help="Of the motion.")

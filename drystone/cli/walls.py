@@ -13,9 +13,11 @@ from drystone.analysis import judge as judge_answer
 from drystone.cli import terminal
 from drystone.cli.options import (
     OUTPUT,
+    case_argument,
     cases_option,
     catching,
     json_flag,
+    known_methods,
     load_case_option,
     methods_option,
     print_json,
@@ -148,7 +150,7 @@ def schema(what: str) -> None:
 
 
 @click.command()
-@click.argument("case")
+@case_argument
 @methods_option(library().methods.one)
 @click.option(
     "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
@@ -180,8 +182,8 @@ def figure(
 
 
 @click.command()
-@click.argument("case")
-@click.option("--method", default=library().methods.one, show_default=True)
+@case_argument
+@click.option("--method", shell_complete=known_methods, default=library().methods.one, show_default=True)
 @click.option("-o", "--output", type=OUTPUT, help="A .gif, .png or .webp.  [default: CASE.gif]")
 @store_option
 @cases_option

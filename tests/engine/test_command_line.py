@@ -259,7 +259,7 @@ def test_settings_that_no_method_has_are_refused(given: str, wall: Path):
     assert not (wall.parent / "out").exists()
 
 
-SOLVERS = ("highspy", "numba", "scipy.optimize", "cvxpy", "pymunk", "casadi", "osqp", "mujoco")
+SOLVERS = ("highspy", "numba", "scipy.optimize", "cvxpy", "pymunk", "ipyopt", "osqp", "mujoco")
 
 
 @pytest.mark.parametrize(
@@ -318,3 +318,22 @@ def test_the_process_of_a_command_ends_with_its_exit_code_and_all_that_it_wrote(
         assert ("last words\n" in done.stdout) is (command[0] == "-c")
         if "--json" in words:
             assert len(json.loads(done.stdout.removesuffix("last words\n"))) > 50
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (("run", "la-b"), ["la-bound"]),
+        (("run", "la", "wall-21-friction-1"), ["wall-21-friction-100"]),
+        (("compare", "single"), ["single-block"]),
+        (("compare", "--methods", "fe,la-b"), ["fe,la-bound"]),
+        (("factor", "--method", "fe-q"), ["fe-qp"]),
+    ],
+)
+def test_a_shell_is_offered_methods_and_cases(words: tuple[str, ...], offered: list[str]):
+    context = {"COMP_WORDS": " ".join(("drystone", *words)), "COMP_CWORD": str(len(words))}
+    environment = os.environ | context | {"_DRYSTONE_COMPLETE": "bash_complete"}
+    done = subprocess.run(
+        [sys.executable, "-m", "drystone"], env=environment, capture_output=True, text=True, timeout=60
+    )
+    assert [line.removeprefix("plain,") for line in done.stdout.split()] == offered

@@ -31,7 +31,7 @@ from harness.model.method import (
 )
 from methods.dummy import Dummy
 
-SOLVERS = {"numba", "llvmlite", "highspy", "osqp", "pymunk", "casadi", "cvxpy", "mujoco"}
+SOLVERS = {"numba", "llvmlite", "highspy", "osqp", "pymunk", "ipyopt", "cvxpy", "mujoco"}
 COMMAND = """
 import json, sys
 from drystone.cli.main import main

@@ -12,6 +12,7 @@ import pip
 import pytest
 
 ROOT = Path(__file__).parents[2]
+LOCK = "requirements.lock"
 
 
 @pytest.fixture
@@ -20,7 +21,7 @@ def checkout(tmp_path: Path) -> Path:
     folder = tmp_path / "a check out"
     (folder / ".ci").mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "set-up", folder / ".ci" / "set-up")
-    (folder / "requirements.lock").write_text("")
+    (folder / LOCK).write_text("")
     return folder
 
 
@@ -35,7 +36,7 @@ def python(folder: Path, name: str, script: str) -> Path:
 
 def set_up(checkout: Path, *words: str, path: str | None = None) -> subprocess.CompletedProcess[str]:
     environment = os.environ | {"PATH": path or os.environ["PATH"]}
-    command = ["/bin/sh", ".ci/set-up", ".venv", *words]
+    command = ["/bin/sh", ".ci/set-up", ".venv", LOCK, *words]
     return subprocess.run(command, cwd=checkout, capture_output=True, text=True, timeout=300, env=environment)
 
 
@@ -95,12 +96,12 @@ def test_an_interrupted_installation_is_taken_up_again(checkout: Path):
 
 
 def test_packages_that_cannot_be_fetched_are_told(checkout: Path):
-    (checkout / "requirements.lock").write_text("no-such-package==1.0 --hash=sha256:" + "0" * 64 + "\n")
+    (checkout / LOCK).write_text("no-such-package==1.0 --hash=sha256:" + "0" * 64 + "\n")
     # An environment that borrows this one's pip, because making one with its own takes ten times as long.
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", checkout / ".venv"], check=True)
     (packages,) = (checkout / ".venv" / "lib").glob("python*/site-packages")
     (packages / "borrowed.pth").write_text(str(Path(pip.__file__).parents[1]))
-    script = "exec /bin/sh .ci/set-up .venv"
+    script = f"exec /bin/sh .ci/set-up .venv {LOCK}"
     environment = os.environ | {"PIP_NO_INDEX": "1"}
     done = subprocess.run(
         ["/bin/sh", "-c", script], cwd=checkout, capture_output=True, text=True, timeout=300, env=environment
@@ -111,7 +112,7 @@ def test_packages_that_cannot_be_fetched_are_told(checkout: Path):
 @pytest.mark.skipif(os.getuid() != 0, reason="a read-only mount needs root")
 def test_a_read_only_checkout_is_told(checkout: Path):
     read_only = f"mount --bind '{checkout}' '{checkout}' && mount -o remount,ro,bind '{checkout}'"
-    script = f"{read_only} && cd '{checkout}' && exec /bin/sh .ci/set-up .venv"
+    script = f"{read_only} && cd '{checkout}' && exec /bin/sh .ci/set-up .venv {LOCK}"
     done = subprocess.run(["unshare", "-m", "sh", "-c", script], capture_output=True, text=True, timeout=60)
     if "unshare" in done.stderr or "mount:" in done.stderr:
         pytest.skip("mounts are not allowed here")

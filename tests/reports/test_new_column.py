@@ -67,6 +67,13 @@ def test_files_and_frames_hold_a_new_column(run: ComparisonRun, tmp_path: Path):
     assert table["twice"].dtype == "Float64"
     assert table["twice"].isna().tolist() == [False, True]
     assert table.attrs["units"]["twice"] == "kN"
+
+
+def test_parquet_holds_a_new_column(run: ComparisonRun, tmp_path: Path):
+    pytest.importorskip("pyarrow", reason="it is large; `.ci/extras` runs this test")
+    export(run, tmp_path, columns=(*RESULTS, TWICE))
+    (item,) = run.cases
+    table = result_frame([(result, proof_of(item, result)) for result in item.results], (*RESULTS, TWICE))
     assert pd.read_parquet(tmp_path / "results.parquet")["twice"].equals(table["twice"])
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pandas as pd
-import pyarrow.parquet as pq
 import pytest
 
 from harness.model import columns
@@ -62,6 +61,7 @@ def test_csv_quotes_texts_so_that_no_reader_makes_numbers_of_them(tmp_path: Path
 
 
 def test_parquet_has_typed_columns(folder: Path):
+    pq = pytest.importorskip("pyarrow.parquet", reason="it is large; `.ci/extras` runs this test")
     table = pq.read_table(folder / "results.parquet")
     assert table.num_rows == 12
     assert str(table.schema.field("multiplier").type) == "double"
@@ -69,6 +69,7 @@ def test_parquet_has_typed_columns(folder: Path):
 
 
 def test_parquet_is_read_by_pandas_as_the_table_of_the_results(folder: Path):
+    pytest.importorskip("pyarrow", reason="it is large; `.ci/extras` runs this test")
     results = [(result, proof_of(item, result)) for item in samples.typical().cases for result in item.results]
     read = pd.read_parquet(folder / "results.parquet")
     pd.testing.assert_frame_equal(read, result_frame(results), check_column_type=False)

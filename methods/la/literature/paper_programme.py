@@ -11,14 +11,17 @@ with 1 + 3 (m - n) + 4 m unknowns. Gradients are exact; Ipopt solves a sequence 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import FloatArray, IntArray
+from harness.model.deadline import Deadline, OutOfTime
 from harness.model.joint_law import block_diagonal
 from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
@@ -26,6 +29,21 @@ from methods.numerics.optional import optional
 
 _FASTEST = 1e3
 """Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
+_ENDS = {
+    0: "Solve_Succeeded",
+    1: "Solved_To_Acceptable_Level",
+    2: "Infeasible_Problem_Detected",
+    3: "Search_Direction_Becomes_Too_Small",
+    4: "Diverging_Iterates",
+    5: "User_Requested_Stop",
+    6: "Feasible_Point_Found",
+    -1: "Maximum_Iterations_Exceeded",
+    -2: "Restoration_Failed",
+    -3: "Error_In_Step_Computation",
+    -10: "Not_Enough_Degrees_Of_Freedom",
+    -13: "Invalid_Number_Detected",
+}
+"""How Ipopt says that it ended (its ApplicationReturnStatus)."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +104,170 @@ def solve_paper_programme(
         start_forces: (m, 3) whose r2 starts the programme, or None for the paper's r2 = 0.
         max_iterations: of Ipopt, for each relaxation.
         epsilons: bounds of y.m relative to the live work, decreasing.
-    """
-    casadi = optional("casadi", "paper", "la-paper")
 
+    Raises:
+        OutOfTime: the time of the run is over.
+    """
+    ipyopt = optional("ipyopt", "paper", "la-paper")
+
+    programme = _programme_of(problem)
+    unknowns, iterations, message = programme.start(start_forces), 0, ""
+    counted: list[int] = []
+
+    def goes_on(_mode: int, iteration: int, *_told: float) -> bool:
+        """Note the number of the iteration, and go on while there is time."""
+        counted.append(iteration)
+        return not problem.deadline.passed
+
+    for epsilon in epsilons:
+        counted.clear()
+        solver = ipyopt.Problem(
+            *programme.bounds_of_unknowns(),
+            *programme.bounds_of_constraints(epsilon),
+            programme.entries_of_derivatives(),
+            programme.entries_of_curvature(),
+            lambda x: float(x[0]),
+            programme.put_slope,
+            programme.put_constraints,
+            programme.put_derivatives,
+            programme.put_curvature,
+            intermediate_callback=goes_on,
+            ipopt_options={"print_level": 0, "sb": "yes", "max_iter": max_iterations, "tol": 1e-9},
+        )
+        unknowns, status = _solved(solver, unknowns, problem.deadline)
+        iterations += max(counted, default=0)
+        message = _ENDS.get(status, f"status {status}")
+    return PaperResult(
+        programme.forces(unknowns), float(unknowns[0]), programme.rates(unknowns), len(unknowns), iterations, message
+    )
+
+
+def _solved(solver: Any, start: FloatArray, deadline: Deadline) -> tuple[FloatArray, int]:
+    """The unknowns that Ipopt ends at and its status; an alarm that rings inside one of its callbacks is not lost."""
+    try:
+        unknowns, _, status = solver.solve(start.copy())
+    except RuntimeError:
+        if deadline.raised:
+            raise OutOfTime from None
+        raise
+    if deadline.raised:
+        raise OutOfTime
+    deadline.ask()
+    return unknowns, int(status)
+
+
+@dataclass(frozen=True)
+class _Programme:
+    """The programme in x = (lambda, r2, rates): forces and slacks are linear in the first two, x_f = (lambda, r2).
+
+    Attributes:
+        second: (k,) rows of r2 among the forces.
+        fixed_forces: (3m,) forces at x_f = 0; forces_of: (3m, 1 + k) of x_f.
+        fixed_slacks: (4m,) slacks at x_f = 0; slacks_of: (4m, 1 + k) of x_f.
+        compatibility: (k, 4m); live_row: (4m,) work of the live load of rates, in units of `live_work`.
+        live_work: of the scaled wall.
+    """
+
+    second: IntArray
+    fixed_forces: FloatArray
+    forces_of: FloatArray
+    fixed_slacks: FloatArray
+    slacks_of: sp.csr_array
+    compatibility: sp.csr_array
+    live_row: FloatArray
+    live_work: float
+
+    @property
+    def _forces(self) -> int:
+        return 1 + len(self.second)
+
+    @property
+    def _rates(self) -> int:
+        return len(self.live_row)
+
+    def start(self, forces: FloatArray | None) -> FloatArray:
+        """The unknowns to start from: r2 of forces (m, 3), or zero."""
+        second = np.zeros(len(self.second)) if forces is None else forces.ravel()[self.second]
+        return np.concatenate([[0.0], second, np.full(self._rates, 0.1)])
+
+    def forces(self, unknowns: FloatArray) -> FloatArray:
+        """(m, 3) forces of the unknowns."""
+        return (self.fixed_forces + self.forces_of @ unknowns[: self._forces]).reshape(-1, 3)
+
+    def rates(self, unknowns: FloatArray) -> FloatArray:
+        """(m, 4) rates of the unknowns."""
+        return unknowns[self._forces :].reshape(-1, 4)
+
+    def bounds_of_unknowns(self) -> tuple[int, FloatArray, FloatArray]:
+        """How many unknowns there are, and between which values they lie."""
+        free = np.full(len(self.second), np.inf)
+        lower = np.concatenate([[0.0], -free, np.zeros(self._rates)])
+        return len(lower), lower, np.concatenate([[np.inf], free, np.full(self._rates, _FASTEST)])
+
+    def bounds_of_constraints(self, epsilon: float) -> tuple[int, FloatArray, FloatArray]:
+        """How many constraints there are, and between which values they lie: compatibility, y, y.m, live work."""
+        none = np.zeros(len(self.second))
+        lower = np.concatenate([none, np.zeros(self._rates), [-np.inf, 0.0]])
+        return len(lower), lower, np.concatenate([none, np.full(self._rates, np.inf), [epsilon, 0.0]])
+
+    def _slacks(self, unknowns: FloatArray) -> FloatArray:
+        return np.asarray(self.fixed_slacks + self.slacks_of @ unknowns[: self._forces])
+
+    def put_slope(self, unknowns: FloatArray, out: FloatArray) -> None:
+        """The gradient of lambda."""
+        out[:] = 0.0
+        out[0] = 1.0
+
+    def put_constraints(self, unknowns: FloatArray, out: FloatArray) -> None:
+        """The values of the constraints."""
+        rates, slacks = unknowns[self._forces :], self._slacks(unknowns)
+        out[: len(self.second)] = self.compatibility @ rates
+        out[len(self.second) : -2] = slacks
+        out[-2] = slacks @ rates / self.live_work
+        out[-1] = self.live_row @ rates - 1.0
+
+    def entries_of_derivatives(self) -> tuple[IntArray, IntArray]:
+        """Row and column of each derivative, in the order of `put_derivatives`."""
+        k, forces = len(self.second), self._forces
+        compatible, slack, live = self.compatibility.tocoo(), self.slacks_of.tocoo(), np.flatnonzero(self.live_row)
+        work = k + self._rates
+        rows = (compatible.row, k + slack.row, np.full(forces + self._rates, work), np.full(len(live), work + 1))
+        columns = (compatible.col + forces, slack.col, np.arange(forces + self._rates), forces + live)
+        return _joined(rows), _joined(columns)
+
+    def put_derivatives(self, unknowns: FloatArray, out: FloatArray) -> None:
+        """The derivatives of the constraints: constant but those of y.m."""
+        rates = unknowns[self._forces :]
+        out[:] = np.concatenate(
+            [
+                self.compatibility.tocoo().data,
+                self.slacks_of.tocoo().data,
+                (self.slacks_of.T @ rates) / self.live_work,
+                self._slacks(unknowns) / self.live_work,
+                self.live_row[np.flatnonzero(self.live_row)],
+            ]
+        )
+
+    def entries_of_curvature(self) -> tuple[IntArray, IntArray]:
+        """Row and column of each second derivative: y.m alone is curved, as a product of rates and x_f."""
+        slack = self.slacks_of.tocoo()
+        return _joined((self._forces + slack.row,)), _joined((slack.col,))
+
+    def put_curvature(self, unknowns: FloatArray, weights: FloatArray, slope: float, out: FloatArray) -> None:
+        """The second derivatives of the Lagrangian."""
+        out[:] = weights[-2] * self.slacks_of.tocoo().data / self.live_work
+
+
+def _joined(parts: Sequence[NDArray[np.integer[Any]]]) -> IntArray:
+    return np.concatenate([part.astype(np.int64) for part in parts])
+
+
+def _programme_of(problem: Problem) -> _Programme:
+    """The programme of a wall.
+
+    Raises:
+        ValueError: a block has no chain of joints to a support.
+    """
     m, first = problem.n_interfaces, np.sort(_determined_system(problem))
     second = np.setdiff1d(np.arange(m), first)
     rows1, rows2 = ((3 * part[:, None] + np.arange(3)).ravel() for part in (first, second))
@@ -97,55 +276,19 @@ def solve_paper_programme(
     transfer = np.where(abs(b2 @ inverse) > 1e-13, b2 @ inverse, 0.0)
     flow = block_diagonal(problem.law.flow)
     m1, m2 = flow[rows1].toarray(), flow[rows2].toarray()
-    compatibility = transfer @ m1 - m2
-    live_row = (inverse.T @ problem.live) @ m1 / problem.live_work
-
-    multiplier = casadi.SX.sym("multiplier")
-    second_forces = casadi.SX.sym("r2", len(rows2))
-    rates = casadi.SX.sym("m", 4 * m)
-    load = _matrix(casadi, inverse.T)
-    first_forces = -(_matrix(casadi, transfer.T) @ second_forces) - load @ (problem.dead + multiplier * problem.live)
-    forces = casadi.SX.zeros(3 * m)
-    forces[rows1.tolist()] = first_forces
-    forces[rows2.tolist()] = second_forces
-    slack = _matrix(casadi, block_diagonal(problem.law.rows).toarray()) @ forces
-    work = casadi.dot(slack, rates) / problem.live_work
-    constraints = casadi.vertcat(
-        _matrix(casadi, compatibility) @ rates, slack, work, _matrix(casadi, live_row[None, :]) @ rates - 1.0
+    fixed_forces, forces_of = np.zeros(3 * m), np.zeros((3 * m, 1 + len(rows2)))
+    fixed_forces[rows1] = -(inverse.T @ problem.dead)
+    forces_of[rows1, 0] = -(inverse.T @ problem.live)
+    forces_of[rows1, 1:] = -transfer.T
+    forces_of[rows2, 1 + np.arange(len(rows2))] = 1.0
+    rows = block_diagonal(problem.law.rows)
+    return _Programme(
+        rows2,
+        fixed_forces,
+        forces_of,
+        rows @ fixed_forces,
+        sp.csr_array(rows @ forces_of),
+        sp.csr_array(transfer @ m1 - m2),
+        (inverse.T @ problem.live) @ m1 / problem.live_work,
+        problem.live_work,
     )
-    unknowns = casadi.vertcat(multiplier, second_forces, rates)
-    options: Any = {
-        "ipopt.print_level": 0,
-        "print_time": 0,
-        "ipopt.sb": "yes",
-        "ipopt.max_iter": max_iterations,
-        "ipopt.tol": 1e-9,
-    }
-    programme: Any = {"x": unknowns, "f": multiplier, "g": constraints}
-    solver = casadi.nlpsol("paper", "ipopt", programme, options)
-    lower = np.concatenate([[0.0], np.full(len(rows2), -np.inf), np.zeros(4 * m)])
-    upper = np.concatenate([np.full(1 + len(rows2), np.inf), np.full(4 * m, _FASTEST)])
-    start = np.concatenate([[0.0], np.zeros(len(rows2)), np.full(4 * m, 0.1)])
-    if start_forces is not None:
-        start[1 : 1 + len(rows2)] = start_forces.ravel()[rows2]
-    evaluate = casadi.Function("forces", [unknowns], [forces])
-    iterations, message = 0, ""
-    equalities = np.zeros(len(rows2))
-    for epsilon in epsilons:
-        found = solver(
-            x0=start,
-            lbx=lower,
-            ubx=upper,
-            lbg=np.concatenate([equalities, np.zeros(4 * m), [-np.inf, 0.0]]),
-            ubg=np.concatenate([equalities, np.full(4 * m, np.inf), [epsilon, 0.0]]),
-        )
-        start = np.asarray(found["x"]).ravel()
-        statistics = solver.stats()
-        iterations += int(statistics["iter_count"])
-        message = str(statistics["return_status"])
-    solved = np.asarray(evaluate(start)).reshape(-1, 3)
-    return PaperResult(solved, float(start[0]), start[1 + len(rows2) :].reshape(-1, 4), len(start), iterations, message)
-
-
-def _matrix(casadi: Any, dense: FloatArray) -> Any:
-    return casadi.sparsify(casadi.DM(dense))
