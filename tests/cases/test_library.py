@@ -7,7 +7,7 @@ from harness.model.case import Case, ReferenceType, case_folders, read_case
 from harness.model.method import method_names
 
 FOLDERS = case_folders([ROOT])
-PUBLISHED = 28
+PUBLISHED = 38
 
 
 @pytest.fixture(params=FOLDERS, scope="module")
