@@ -47,9 +47,7 @@ class PressedState:
     mechanism: FloatArray
 
 
-def moving_rows(
-    wall: Assembly, mechanism: FloatArray, dilatancy: FloatArray, options: StateTolerances = StateTolerances()
-) -> BoolArray:
+def moving_rows(wall: Assembly, mechanism: FloatArray, options: StateTolerances = StateTolerances()) -> BoolArray:
     """(m, 4) rows of the joint law along which the joints of a wall move in a mechanism (n, 3)."""
     strains = (wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3)
     rates = wall.law.rates(strains)
