@@ -32,12 +32,14 @@ class StripTolerances:
         settled: change of shares at which forces of rest are within the stress blocks to rounding.
         most: share above which a joint has no length left to set in.
         rounds: of answers, at most.
+        least: the method looks for the least state, so that any exact one is an answer, and the least of them the best.
     """
 
     agrees: float = 1e-6
     settled: float = 1e-12
     most: float = 0.999
     rounds: int = 20
+    least: bool = False
 
 
 def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = StripTolerances()) -> Answer:
@@ -48,7 +50,7 @@ def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = Strip
         options: when it is found.
     """
     share = stood = np.zeros(assembly.n_interfaces)
-    answer = None
+    answer, least = None, None
     for rounds in range(1, options.rounds + 1):
         wall = set_in(assembly, share)
         answer = solve(wall)
@@ -69,10 +71,14 @@ def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = Strip
                 return replace(answer, forces=forces)
             continue
         state = _state_beside(assembly, wall, answer, forces)
-        if state is not None and _agree(assembly, answer, state, options.agrees):
-            return with_state(answer, state, rounds)
-        share = np.minimum(pressed_shares(assembly, forces if state is None else state.forces), options.most)
-    return _not_found(answer, options.rounds)
+        if state is not None:
+            if options.least and (least is None or state.multiplier < least[1].multiplier):
+                least = answer, state
+            if _agree(assembly, answer, state, options.agrees):
+                return _with_state(*(least or (answer, state)), rounds)
+            forces = state.forces
+        share = np.minimum(pressed_shares(assembly, forces), options.most)
+    return _with_state(*least, options.rounds) if least is not None else _not_found(answer, options.rounds)
 
 
 def falling_mechanism(assembly: Assembly) -> FloatArray | None:
@@ -81,25 +87,31 @@ def falling_mechanism(assembly: Assembly) -> FloatArray | None:
     return own.mechanism if own.upper < 1.0 else None
 
 
-def with_state(answer: Answer, state: PressedState, rounds: int) -> Answer:
+def _with_state(answer: Answer, state: PressedState, rounds: int) -> Answer:
     """The answer with an exact state of the stress blocks in place of that of a wall that is set in."""
-    sentence = (
-        f"{answer.sentence.rstrip('.')}. Its joints crush: those that turn do so about the inner edges of their pressed "
-        f"strips, and the multiplier is {state.multiplier:.7g}."
-    )
+    details = {name: value for name, value in answer.details.items() if name not in _OF_OTHER_JOINTS}
     return replace(
         answer,
-        sentence=sentence,
+        sentence=f"With joints that crush the wall collapses at {state.multiplier:.7g} times the live load: the one "
+        f"state of the stress blocks that belongs to the last of {rounds} walls whose joints were set in by what they "
+        "press.",
         multiplier=state.multiplier,
         forces=state.forces,
         forces_multiplier=state.multiplier,
         mechanism=state.mechanism,
-        details=answer.details | {"set_in_walls": rounds},
+        details=details | {"set_in_walls": rounds},
     )
 
 
+_OF_OTHER_JOINTS = (
+    *("proved_least", "lower_bound", "proof_nodes", "certificate", "certified_bound", "rational_confirmation"),
+    *("associated", "starts_at_least_known", "starts_agree", "residuals", "work_multiplier", "plateau"),
+)
+"""Details of answers that are true of the wall that is set in alone."""
+
+
 def _state_beside(assembly: Assembly, wall: Assembly, answer: Answer, forces: FloatArray) -> PressedState | None:
-    """The exact state of the stress blocks by the mechanism of an answer for a wall that is set in; None without any."""
+    """The exact state of the stress blocks by the mechanism of an answer for a wall set in; None without any."""
     if answer.mechanism is None or not answer.multiplier:
         return None
     state = exact_state(assembly, forces, moving_rows(wall, answer.mechanism))
