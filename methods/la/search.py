@@ -51,7 +51,7 @@ class LimitAnalysis(LimitAnalysisFamily):
         if isinstance(early, Answer):
             return early
         unproved = settings.model_copy(update={"bound_seconds": 0.0})
-        return by_strips(assembly, lambda wall: self._of_component(wall, unproved, answer), _LEAST)
+        return by_strips(assembly, lambda wall: self._of_component(wall, unproved, answer), self._strips)
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.
