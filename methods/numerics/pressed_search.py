@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.claims import growing_forces
 from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
@@ -43,42 +44,76 @@ class StripTolerances:
 
 
 def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = StripTolerances()) -> Answer:
-    """The answer for a component whose joints crush.
+    """The answer for a component whose joints crush; where the time is over, that with the least state known.
 
     Args:
         assembly: the component; solve: answers for the same with joints that do not crush and are set in.
         options: when it is found.
     """
+    found: list[_Found] = []
+
+    def known() -> Answer:
+        if not (found and options.least):
+            raise OutOfTime
+        answer = _with_state(_least(found), len(found))
+        return replace(answer, details=answer.details | {"stopped_by_limit": True})
+
+    return best_so_far(lambda: _to_its_end(assembly, solve, options, found), known)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """An exact state of the stress blocks, and the answer for the wall set in that led to it."""
+
+    state: PressedState
+    answer: Answer
+
+
+def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, found: list[_Found]) -> Answer:
+    """As `by_strips`, in as many rounds as there may be; `found` gets the exact states."""
     share = stood = np.zeros(assembly.n_interfaces)
-    answer, least = None, None
+    answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
         wall = set_in(assembly, share)
         answer = solve(wall)
-        if answer.finding is Finding.FALLS:
-            proof = falling_mechanism(assembly)
-            if proof is not None or not share.any():
-                return answer if proof is None else replace(answer, mechanism=proof, flow="associated")
-            share = 0.5 * (share + stood)
+        lost = answer.finding in (Finding.FALLS, Finding.NONE) and answer.status is not Status.REFUSED
+        if lost and abs(share - stood).max() > 0.0 and falling_mechanism(assembly) is None:
+            share = 0.5 * (share + stood)  # pressed by forces of a state that is further from this one
             continue
-        if answer.finding is Finding.UNBOUNDED:
-            return _without_end(assembly, answer)
-        if answer.status is not Status.OK or answer.forces is None:
-            return answer
+        ends = _ends(assembly, answer)
+        if ends is not None:
+            return ends
+        assert answer.forces is not None
         stood, forces = share, at_ends(share, answer.forces)
-        if answer.finding is Finding.STANDS:
-            share = np.minimum(pressed_shares(assembly, forces), options.most)
-            if abs(share - stood).max() <= options.settled:
-                return replace(answer, forces=forces)
-            continue
-        state = _state_beside(assembly, wall, answer, forces)
-        if state is not None:
-            if options.least and (least is None or state.multiplier < least[1].multiplier):
-                least = answer, state
-            if _agree(assembly, answer, state, options.agrees):
-                return _with_state(*(least or (answer, state)), rounds)
-            forces = state.forces
+        if answer.finding is Finding.COLLAPSES:
+            state = _state_beside(assembly, wall, answer, forces)
+            if state is not None:
+                found.append(_Found(state, answer))
+                if _agree(assembly, answer, state, options.agrees):
+                    return _with_state(_least(found) if options.least else found[-1], rounds)
+                forces = state.forces
         share = np.minimum(pressed_shares(assembly, forces), options.most)
-    return _with_state(*least, options.rounds) if least is not None else _not_found(answer, options.rounds)
+        if answer.finding is Finding.STANDS and abs(share - stood).max() <= options.settled:
+            return replace(answer, forces=forces)
+    if found and options.least:
+        return _with_state(_least(found), options.rounds)
+    proof = falling_mechanism(assembly)
+    return _not_found(answer, options.rounds) if proof is None else _falls(answer, proof)
+
+
+def _ends(assembly: Assembly, answer: Answer) -> Answer | None:
+    """The answer where that for a wall set in leaves nothing to follow; None where it has forces to go on from."""
+    if answer.finding is Finding.FALLS:
+        proof = falling_mechanism(assembly)
+        return answer if proof is None else _falls(answer, proof)
+    if answer.finding is Finding.UNBOUNDED:
+        return _without_end(assembly, answer)
+    goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow == "non-associated"
+    return None if goes_on else answer
+
+
+def _least(found: list[_Found]) -> _Found:
+    return min(found, key=lambda one: one.state.multiplier)
 
 
 def falling_mechanism(assembly: Assembly) -> FloatArray | None:
@@ -87,14 +122,14 @@ def falling_mechanism(assembly: Assembly) -> FloatArray | None:
     return own.mechanism if own.upper < 1.0 else None
 
 
-def _with_state(answer: Answer, state: PressedState, rounds: int) -> Answer:
+def _with_state(found: _Found, rounds: int) -> Answer:
     """The answer with an exact state of the stress blocks in place of that of a wall that is set in."""
+    answer, state = found.answer, found.state
     details = {name: value for name, value in answer.details.items() if name not in _OF_OTHER_JOINTS}
     return replace(
         answer,
-        sentence=f"With joints that crush the wall collapses at {state.multiplier:.7g} times the live load: the one "
-        f"state of the stress blocks that belongs to the last of {rounds} walls whose joints were set in by what they "
-        "press.",
+        sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state "
+        f"of their stress blocks, from {rounds} walls whose joints were set in to the middle of what they press.",
         multiplier=state.multiplier,
         forces=state.forces,
         forces_multiplier=state.multiplier,
@@ -112,7 +147,7 @@ _OF_OTHER_JOINTS = (
 
 def _state_beside(assembly: Assembly, wall: Assembly, answer: Answer, forces: FloatArray) -> PressedState | None:
     """The exact state of the stress blocks by the mechanism of an answer for a wall set in; None without any."""
-    if answer.mechanism is None or not answer.multiplier:
+    if answer.mechanism is None:
         return None
     state = exact_state(assembly, forces, moving_rows(wall, answer.mechanism))
     return state if state is not None and state.multiplier > 0.0 else None
@@ -135,9 +170,16 @@ def _without_end(assembly: Assembly, answer: Answer) -> Answer:
     )
 
 
-def _not_found(answer: Answer | None, rounds: int) -> Answer:
+def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
+    """The answer where statics shows that the dead load is not borne, by a dilatant mechanism (n, 3)."""
+    sentence = "the wall falls under its dead load: no equilibrium within the stress blocks exists, whatever the flow"
+    return replace(
+        _nothing(answer, sentence), status=Status.OK, finding=Finding.FALLS, mechanism=mechanism, flow="associated"
+    )
+
+
+def _not_found(answer: Answer, rounds: int) -> Answer:
     """The answer where no state of the stress blocks belongs to the shares by which the joints were set in."""
-    assert answer is not None
     near = "" if answer.multiplier is None else f"; the last of them collapses at {answer.multiplier:.6g}"
     return _nothing(
         answer,

@@ -131,13 +131,11 @@ def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> Floa
     _, _, flow = _tangents(assembly, share)
     live = assembly.free_loads()[1] * column
     strains = assembly.kinematic_matrix @ sp.diags(column)
-    matrix = sp.bmat(
-        [[strains, -block_diagonal(flow)], [sp.csr_matrix(live[None, :] / abs(live).sum()), None]], format="csc"
-    )
+    matrix = sp.bmat([[strains, -block_diagonal(flow)], [sp.csr_matrix(live[None, :] / abs(live).sum()), None]])
     speeds = np.full(3 * n, INFINITY)
     right = np.append(np.zeros(3 * m), 1.0)
     programme = Programme(
-        matrix,
+        sp.csc_matrix(matrix),
         np.zeros(3 * n + 4 * m),
         (np.append(-speeds, np.zeros(4 * m)), np.append(speeds, np.where(moving.ravel(), INFINITY, 0.0))),
         (right, right),
