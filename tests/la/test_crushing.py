@@ -240,7 +240,11 @@ def test_commands_answer_or_refuse(tmp_path: Path):
     data = json.loads(path.read_text())
     moving = tmp_path / "moving.json"
     moving.write_text(json.dumps(data | {"settlements": [{"blocks": ["base"], "translation": [0, -1]}]}))
-    for command in (["factor", path, "--method", "de"], ["bound", path, "-o", tmp_path / "b.json"], ["reaction", moving]):
+    for command in (
+        ["factor", path, "--method", "de"],
+        ["bound", path, "-o", tmp_path / "b.json"],
+        ["reaction", moving],
+    ):
         refused = drystone(*command)
         assert refused.returncode == 2, refused.stdout
         assert "compressive strength" in refused.stderr
