@@ -80,7 +80,7 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
         if lost and abs(share - stood).max() > 0.0 and falling_mechanism(assembly) is None:
             share = 0.5 * (share + stood)  # pressed by forces of a state that is further from this one
             continue
-        ends = _ends(assembly, answer)
+        ends = ends_at(assembly, answer)
         if ends is not None:
             return ends
         assert answer.forces is not None
@@ -101,14 +101,14 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
     return _not_found(answer, options.rounds) if proof is None else _falls(answer, proof)
 
 
-def _ends(assembly: Assembly, answer: Answer) -> Answer | None:
+def ends_at(assembly: Assembly, answer: Answer) -> Answer | None:
     """The answer where that for a wall set in leaves nothing to follow; None where it has forces to go on from."""
     if answer.finding is Finding.FALLS:
         proof = falling_mechanism(assembly)
         return answer if proof is None else _falls(answer, proof)
     if answer.finding is Finding.UNBOUNDED:
         return _without_end(assembly, answer)
-    goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow == "non-associated"
+    goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow != "associated"
     return None if goes_on else answer
 
 
@@ -163,7 +163,7 @@ def _without_end(assembly: Assembly, answer: Answer) -> Answer:
     """The answer where the live load grows for ever in joints that do not crush; else nothing is known."""
     if growing_forces(assembly) is not None:
         return replace(answer, forces=None, forces_multiplier=None)
-    return _nothing(
+    return no_answer(
         answer,
         "the live load presses joints the more the greater it is, until they crush evenly, which is not followed; "
         "la-associated gives the upper bound",
@@ -174,21 +174,22 @@ def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
     """The answer where statics shows that the dead load is not borne, by a dilatant mechanism (n, 3)."""
     sentence = "the wall falls under its dead load: no equilibrium within the stress blocks exists, whatever the flow"
     return replace(
-        _nothing(answer, sentence), status=Status.OK, finding=Finding.FALLS, mechanism=mechanism, flow="associated"
+        no_answer(answer, sentence), status=Status.OK, finding=Finding.FALLS, mechanism=mechanism, flow="associated"
     )
 
 
 def _not_found(answer: Answer, rounds: int) -> Answer:
     """The answer where no state of the stress blocks belongs to the shares by which the joints were set in."""
     near = "" if answer.multiplier is None else f"; the last of them collapses at {answer.multiplier:.6g}"
-    return _nothing(
+    return no_answer(
         answer,
         f"no collapse state of the joints that crush belongs to any of {rounds} walls whose joints were set in by what "
         f"they press{near}",
     )
 
 
-def _nothing(answer: Answer, sentence: str) -> Answer:
+def no_answer(answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence; its way and its details stay."""
     return replace(
         answer,
         status=Status.NOT_CONVERGED,

@@ -85,10 +85,26 @@ def _tangents(assembly: Assembly, share: FloatArray) -> tuple[FloatArray, FloatA
     return rows, constant, flow
 
 
+def held_forces(
+    assembly: Assembly, forces: FloatArray, multiplier: float, options: StateTolerances = StateTolerances()
+) -> FloatArray | None:
+    """The contact forces (m, 3) within the stress blocks that bear a multiplier, near others; None without any."""
+    known, rests = forces, np.zeros((assembly.n_interfaces, 4), dtype=bool)
+    for _ in range(options.rounds):
+        share = pressed_shares(assembly, known)
+        found = _nearest_forces(assembly, share, rests, forces, multiplier)
+        if found is None:
+            return None
+        known = found[0]
+        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= options.settled:
+            return known
+    return None
+
+
 def _nearest_forces(
-    assembly: Assembly, share: FloatArray, moving: BoolArray, near: FloatArray
+    assembly: Assembly, share: FloatArray, moving: BoolArray, near: FloatArray, multiplier: float | None = None
 ) -> tuple[FloatArray, float] | None:
-    """Forces (m, 3) of least distance from others, and their multiplier, within tangents at shares (m,)."""
+    """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given."""
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
     m, n = assembly.n_interfaces, assembly.n_free
@@ -101,18 +117,19 @@ def _nearest_forces(
     apart = sp.identity(3 * m, format="csr")
     matrix = sp.bmat(
         [
-            [statics, sp.csr_matrix(live[:, None]), None, None],
-            [block_diagonal(rows), None, None, None],
-            [apart, None, -apart, apart],
+            [statics, sp.csr_matrix(live[:, None]), None],
+            [block_diagonal(rows), None, None],
+            [apart, None, sp.hstack([-apart, apart])],
         ]
     )
     slack, target = -constant.ravel() / unit, near.ravel() / unit
     most = np.where(moving.ravel(), slack, INFINITY)
-    free, parts = np.full(3 * m + 1, INFINITY), np.full(6 * m, INFINITY)
+    at = (-INFINITY, INFINITY) if multiplier is None else (multiplier / assembly.load_unit,) * 2
+    free, none, parts = np.full(3 * m, INFINITY), np.zeros(6 * m), np.full(6 * m, INFINITY)
     programme = Programme(
         sp.csc_matrix(matrix),
         np.append(np.zeros(3 * m + 1), np.ones(6 * m)),
-        (np.append(-free, np.zeros(6 * m)), np.append(free, parts)),
+        (np.concatenate([-free, at[:1], none]), np.concatenate([free, at[1:], parts])),
         (np.concatenate([-dead / unit, slack, target]), np.concatenate([-dead / unit, most, target])),
     )
     status, _, _ = programme.run()
@@ -120,6 +137,36 @@ def _nearest_forces(
     if vertex is None or not vertex.feasible:
         return None
     return vertex.value[: 3 * m].reshape(-1, 3) * unit, float(vertex.value[3 * m]) * assembly.load_unit
+
+
+def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> tuple[FloatArray, float] | None:
+    """The motion (n, 3) of joints that press shares (m,) nearest to rates (m, 4), along rows that move in these alone.
+
+    Returns:
+        The motion, and the largest difference of a rate beside the largest rate; None where the programme fails.
+    """
+    from methods.numerics.linear_programme import INFINITY, Programme
+
+    m, n = assembly.n_interfaces, assembly.n_free
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    _, _, flow = _tangents(assembly, share)
+    strains, own = assembly.kinematic_matrix @ sp.diags(column), sp.identity(4 * m, format="csr")
+    matrix = sp.bmat([[strains, -block_diagonal(flow), None], [None, own, sp.hstack([-own, own])]])
+    target = np.maximum(rates, 0.0).ravel() / rates.max()
+    speeds, none, parts = np.full(3 * n, INFINITY), np.zeros(12 * m), np.full(8 * m, INFINITY)
+    right = np.append(np.zeros(3 * m), target)
+    programme = Programme(
+        sp.csc_matrix(matrix),
+        np.append(np.zeros(3 * n + 4 * m), np.ones(8 * m)),
+        (np.append(-speeds, none), np.concatenate([speeds, np.where(target > 0.0, INFINITY, 0.0), parts])),
+        (right, right),
+    )
+    status, value, _ = programme.run()
+    if status != "optimal":
+        return None
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    mechanism[assembly.free] = (value[: 3 * n] * column).reshape(-1, 3)
+    return mechanism, float(abs(value[3 * n : 3 * n + 4 * m] - target).max())
 
 
 def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> FloatArray | None:
