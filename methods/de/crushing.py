@@ -62,9 +62,12 @@ def _with_held(assembly: Assembly, share: FloatArray, answer: Answer, held: Floa
     details = answer.details | {"set_in_walls": rounds}
     if answer.mechanism is None or MOVING_FORCES not in details:
         return replace(answer, forces=held, details=details)
-    moving = at_ends(share, np.asarray(details[MOVING_FORCES]))
-    wall = set_in(assembly, share)
+    wall, borne = set_in(assembly, share), np.asarray(details[MOVING_FORCES])
+    moving = at_ends(share, borne)
     rates = wall.law.rates((wall.kinematic_matrix @ answer.mechanism[wall.free].ravel()).reshape(-1, 3))
+    # An end opens that bears less than it opens, relative to a block and to the fastest rate; the rest is noise.
+    bears = wall.law.slacks(borne)[:, :2] * wall.n_free / wall.force_scale
+    rates[:, :2] = np.where(bears <= rates[:, :2] / rates.max(), rates[:, :2], 0.0)
     shares = np.clip(pressed_shares(assembly, moving), 0.0, 1.0)
     motion = nearest_motion(assembly, shares, rates)
     if motion is None or motion[1] > 0.5 * shares.max():
