@@ -223,13 +223,15 @@ def _crushing_walls() -> Iterator[Recipe]:
 
 
 _ASSOCIATED = ("la-associated", "la-associated-cvxpy")
-_CRUSHING = ("la", *_ASSOCIATED, "fe")
+_EXACT = ("la", *_ASSOCIATED, "fe")
+_CRUSHING = (*_EXACT, "de")
 """Methods that take joints which crush."""
 
 
 def _of_one_limit(value: float, source: str, requirement: str, tolerance: float) -> list[Reference]:
     """An exact value for all methods that take joints which crush, of a wall in which nothing slides."""
-    return [_of_crushing("limit", value, _CRUSHING, source, requirement, tolerance)]
+    of_de = r.of_de("limit-de", value, source, requirement)
+    return [_of_crushing("limit", value, _EXACT, source, requirement, tolerance), of_de]
 
 
 def _of_crushing(
@@ -243,28 +245,26 @@ def _of_crushing(
 
 
 def _without_dilatancy() -> list[Reference]:
-    """The states of the stronger of the two 21-brick walls without dilatancy: least known, and the plateau of FE."""
-    value, source = (
-        0.5515217391,
-        "Drystone, first release with crushing in these methods: a state accepted by the judge",
+    """The states of the stronger of the two 21-brick walls without dilatancy: least known, plateau of FE, in DE."""
+    said = (
+        ("la", "at_most", "LA finds a collapse state at least as low as 0.5515217."),
+        ("fe", "equal", "The plateau of FE is 0.5515217."),
+        ("de", "contains", "The bracket of DE holds 0.5515217."),
     )
     return [
         r.reference(
             f"{method}-known",
             "regression",
-            value,
+            0.5515217391,
             [method],
-            source,
+            "Drystone, first release with crushing in these methods: a state accepted by the judge",
             sentence,
             relation=relation,
             tolerance=1e-9,
             tolerance_reason="ten digits recorded",
             gate=True,
         )
-        for method, relation, sentence in (
-            ("la", "at_most", "LA finds a collapse state at least as low as 0.5515217."),
-            ("fe", "equal", "The plateau of FE is 0.5515217."),
-        )
+        for method, relation, sentence in said
     ]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.pressed_search import ends_at, no_answer
+from methods.numerics.pressed_search import ends_at, no_answer, not_found
 from methods.numerics.pressed_state import held_forces, nearest_motion
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 
@@ -54,7 +54,8 @@ def held_by_strips(
             if held is not None:
                 return _with_held(assembly, share, answer, held, rounds)
         share, before = np.minimum(pressed_shares(assembly, forces), options.most), multiplier
-    return no_answer(answer, f"the multiplier did not settle over {options.rounds} walls whose joints were set in")
+    sentence = f"the multiplier did not settle over {options.rounds} walls whose joints were set in"
+    return not_found(assembly, answer, sentence)
 
 
 def _with_held(assembly: Assembly, share: FloatArray, answer: Answer, held: FloatArray, rounds: int) -> Answer:

@@ -97,8 +97,13 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
             return replace(answer, forces=forces)
     if found and options.least:
         return _with_state(_least(found), options.rounds)
-    proof = falling_mechanism(assembly)
-    return _not_found(answer, options.rounds) if proof is None else _falls(answer, proof)
+    near = "" if answer.multiplier is None else f"; the last of them collapses at {answer.multiplier:.6g}"
+    return not_found(
+        assembly,
+        answer,
+        f"no collapse state of the joints that crush belongs to any of {options.rounds} walls whose joints were set in "
+        f"by what they press{near}",
+    )
 
 
 def ends_at(assembly: Assembly, answer: Answer) -> Answer | None:
@@ -178,14 +183,10 @@ def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
     )
 
 
-def _not_found(answer: Answer, rounds: int) -> Answer:
-    """The answer where no state of the stress blocks belongs to the shares by which the joints were set in."""
-    near = "" if answer.multiplier is None else f"; the last of them collapses at {answer.multiplier:.6g}"
-    return no_answer(
-        answer,
-        f"no collapse state of the joints that crush belongs to any of {rounds} walls whose joints were set in by what "
-        f"they press{near}",
-    )
+def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
+    proof = falling_mechanism(assembly)
+    return no_answer(answer, sentence) if proof is None else _falls(answer, proof)
 
 
 def no_answer(answer: Answer, sentence: str) -> Answer:

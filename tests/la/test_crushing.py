@@ -241,14 +241,14 @@ def test_commands_answer_or_refuse(tmp_path: Path):
     moving = tmp_path / "moving.json"
     moving.write_text(json.dumps(data | {"settlements": [{"blocks": ["base"], "translation": [0, -1]}]}))
     for command in (
-        ["factor", path, "--method", "de"],
+        ["factor", path, "--method", "de-soft"],
         ["bound", path, "-o", tmp_path / "b.json"],
         ["reaction", moving],
     ):
         refused = drystone(*command)
         assert refused.returncode == 2, refused.stdout
         assert "compressive strength" in refused.stderr
-    assert "--method fe" in drystone("factor", path, "--method", "de").stderr
+    assert "--method de" in drystone("factor", path, "--method", "de-soft").stderr
 
 
 def test_strength_far_above_the_loads_is_refused_with_the_joint():
