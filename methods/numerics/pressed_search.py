@@ -50,7 +50,7 @@ def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = Strip
         assembly: the component; solve: answers for the same with joints that do not crush and are set in.
         options: when it is found.
     """
-    found: list[_Found] = []
+    found: list[_StateOfStrips] = []
 
     def known() -> Answer:
         if not (found and options.least):
@@ -62,14 +62,14 @@ def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = Strip
 
 
 @dataclass(frozen=True, eq=False)
-class _Found:
+class _StateOfStrips:
     """An exact state of the stress blocks, and the answer for the wall set in that led to it."""
 
     state: PressedState
     answer: Answer
 
 
-def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, found: list[_Found]) -> Answer:
+def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, found: list[_StateOfStrips]) -> Answer:
     """As `by_strips`, in as many rounds as there may be; `found` gets the exact states."""
     share = stood = np.zeros(assembly.n_interfaces)
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
@@ -88,7 +88,7 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
         if answer.finding is Finding.COLLAPSES:
             state = _state_beside(assembly, wall, answer, forces)
             if state is not None:
-                found.append(_Found(state, answer))
+                found.append(_StateOfStrips(state, answer))
                 if _agree(assembly, answer, state, options.agrees):
                     return _with_state(_least(found) if options.least else found[-1], rounds)
                 forces = state.forces
@@ -117,7 +117,7 @@ def ends_at(assembly: Assembly, answer: Answer) -> Answer | None:
     return None if goes_on else answer
 
 
-def _least(found: list[_Found]) -> _Found:
+def _least(found: list[_StateOfStrips]) -> _StateOfStrips:
     return min(found, key=lambda one: one.state.multiplier)
 
 
@@ -127,7 +127,7 @@ def falling_mechanism(assembly: Assembly) -> FloatArray | None:
     return own.mechanism if own.upper < 1.0 else None
 
 
-def _with_state(found: _Found, rounds: int) -> Answer:
+def _with_state(found: _StateOfStrips, rounds: int) -> Answer:
     """The answer with an exact state of the stress blocks in place of that of a wall that is set in."""
     answer, state = found.answer, found.state
     details = {name: value for name, value in answer.details.items() if name not in _OF_OTHER_JOINTS}
