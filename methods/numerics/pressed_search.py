@@ -114,7 +114,9 @@ def ends_at(assembly: Assembly, answer: Answer) -> Answer | None:
     if answer.finding is Finding.UNBOUNDED:
         return _without_end(assembly, answer)
     goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow != "associated"
-    return None if goes_on else answer
+    if goes_on or answer.status is Status.REFUSED:
+        return None if goes_on else answer
+    return no_answer(answer, f"a wall whose joints are set in has no answer to go on from: {answer.sentence}")
 
 
 def _least(found: list[_StateOfStrips]) -> _StateOfStrips:
