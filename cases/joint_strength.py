@@ -178,22 +178,27 @@ def _crushing_piers() -> Iterator[Recipe]:
             pattern={"type": "stack", "width": width, "height": height, "count": 1},
             loads=push(),
         )
-        references = _by_associated(
-            round(value, 14), f"{STATICS}: {formula}, t = 1 m", f"The pier overturns at {value:.7g}.", r.ROUND_OFF
-        )
+        source, sentence = f"{STATICS}: {formula}, t = 1 m", f"The pier overturns at {value:.7g}."
+        references = _of_one_limit(round(value, 14), source, sentence, r.ROUND_OFF)
         summary = (
             "It turns about the inner edge of the strip that is crushed, not about its corner: less than b / h by "
             "gamma b / f_c."
         )
-        yield recipe(name, content, references, Remarks(_BONDED, summary, ("strength",), methods=_ASSOCIATED))
+        yield recipe(name, content, references, Remarks(_BONDED, summary, ("strength",), methods=_CRUSHING))
 
 
 def _crushing_walls() -> Iterator[Recipe]:
-    """The 21-brick wall and a semicircular arch whose joints crush: second-order cone programmes of other code."""
+    """The 21-brick wall and a semicircular arch whose joints crush: second-order cone programmes of other code.
+
+    The arch does not slide, so that it has one limit. The weaker of the two walls presses more than half of a joint,
+    where methods without dilatancy find no state.
+    """
     ring = {"type": "ring", "inner_radius": 0.9, "outer_radius": 1.1, "count": 20}
+    bricks, arch = "The 21-brick wall", "A semicircular arch of 20 voussoirs"
     for name, title, friction, pattern, length, ratio, value, digits in (
-        ("crushing-wall-21", "The 21-brick wall", 0.65, BOND_21, 0.4, 20.0, 0.51801, 5e-6),
-        ("crushing-arch-20", "A semicircular arch of 20 voussoirs", 1000.0, ring, 1.0, 20.0, 0.2530433, 5e-8),
+        ("crushing-wall-21", bricks, 0.65, BOND_21, 0.4, 20.0, 0.51801, 5e-6),
+        ("crushing-wall-21-strong", bricks, 0.65, BOND_21, 0.4, 100.0, 0.571732, 5e-7),
+        ("crushing-arch-20", arch, 1000.0, ring, 1.0, 20.0, 0.2530433, 5e-8),
     ):
         content = wall(
             f"{title} whose joints crush",
@@ -203,34 +208,63 @@ def _crushing_walls() -> Iterator[Recipe]:
             pattern=pattern,
             loads=push(),
         )
-        references = _by_associated(
-            value,
-            f"a second-order cone programme of other code, f_c = {ratio:g} unit weight times {length:g} m",
-            f"The associated maximum is {value:g}.",
-            digits,
-        )
+        source = f"a second-order cone programme of other code, f_c = {ratio:g} unit weight times {length:g} m"
+        sentence = f"The associated maximum is {value:g}."
         summary = "Crushing at the hinges of the mechanism lowers the associated maximum."
-        yield recipe(name, content, references, Remarks(_BONDED, summary, ("strength",), methods=_ASSOCIATED))
+        methods = _ASSOCIATED if ratio < 100.0 and pattern is BOND_21 else _CRUSHING
+        if pattern is ring:
+            references = _of_one_limit(value, source, sentence, digits)
+        else:
+            references = [_of_crushing("associated", value, _ASSOCIATED, source, sentence, digits)]
+        if name == "crushing-wall-21-strong":
+            references += _without_dilatancy()
+            summary += " Without dilatancy it slides and crushes at 0.5515217 (least known), dry at 0.5579978."
+        yield recipe(name, content, references, Remarks(_BONDED, summary, ("strength",), methods=methods))
 
 
 _ASSOCIATED = ("la-associated", "la-associated-cvxpy")
+_EXACT = ("la", *_ASSOCIATED, "fe")
+_CRUSHING = (*_EXACT, "de")
+"""Methods that take joints which crush."""
 
 
-def _by_associated(value: float, source: str, requirement: str, tolerance: float) -> list[Reference]:
-    """An exact value for the methods that take joints which crush."""
+def _of_one_limit(value: float, source: str, requirement: str, tolerance: float) -> list[Reference]:
+    """An exact value for all methods that take joints which crush, of a wall in which nothing slides."""
+    of_de = r.of_de("limit-de", value, source, requirement)
+    return [_of_crushing("limit", value, _EXACT, source, requirement, tolerance), of_de]
+
+
+def _of_crushing(
+    name: str, value: float, methods: tuple[str, ...], source: str, requirement: str, tolerance: float
+) -> Reference:
+    """An exact value of methods that take joints which crush."""
     reason = r.ROUND_OFF_REASON if tolerance == r.ROUND_OFF else "half a unit of the last digit recorded"
+    return r.reference(
+        name, "exact", value, methods, source, requirement, tolerance=tolerance, tolerance_reason=reason, gate=True
+    )
+
+
+def _without_dilatancy() -> list[Reference]:
+    """The states of the stronger of the two 21-brick walls without dilatancy: least known, plateau of FE, in DE."""
+    said = (
+        ("la", "at_most", "LA finds a collapse state at least as low as 0.5515217."),
+        ("fe", "equal", "The plateau of FE is 0.5515217."),
+        ("de", "contains", "The bracket of DE holds 0.5515217."),
+    )
     return [
         r.reference(
-            "associated",
-            "exact",
-            value,
-            list(_ASSOCIATED),
-            source,
-            requirement,
-            tolerance=tolerance,
-            tolerance_reason=reason,
+            f"{method}-known",
+            "regression",
+            0.5515217391,
+            [method],
+            "Drystone, first release with crushing in these methods: a state accepted by the judge",
+            sentence,
+            relation=relation,
+            tolerance=1e-9,
+            tolerance_reason="ten digits recorded",
             gate=True,
         )
+        for method, relation, sentence in said
     ]
 
 

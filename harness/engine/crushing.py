@@ -38,6 +38,23 @@ def block_power(assembly: Assembly, opening: FloatArray) -> FloatArray:
     return np.where(crushes, taken, 0.0)
 
 
+def block_forces(assembly: Assembly, opening: FloatArray) -> FloatArray:
+    """(m, 2) forces (n1, n2) of the stresses on openings (m, 2) of the ends; meaningless in joints that do not crush.
+
+    What closes is pressed: the share p of the joint where one end closes and the other opens, so that its force p F0
+    acts at p / 2 from the end that closes.
+    """
+    tension, full = _tension_and_full(assembly)
+    low, high = opening.min(axis=1), opening.max(axis=1)
+    turn = high - low
+    pressed = np.where(high <= 0.0, 1.0, np.where(low < 0.0, -low / np.where(turn > 0.0, turn, 1.0), 0.0))
+    force = np.where(np.isfinite(assembly.crushing), full, 0.0) * pressed
+    at_closing, at_other = force * (1.0 - 0.5 * pressed), force * 0.5 * pressed
+    first = opening[:, 0] <= opening[:, 1]
+    ends = np.column_stack([np.where(first, at_closing, at_other), np.where(first, at_other, at_closing)])
+    return np.asarray(ends - 0.5 * tension[:, None])
+
+
 def _tension_and_full(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
     """(m,) tension f_t A, and (m,) force F0 = (f_c + f_t) A."""
     tension = assembly.constant[:, 0] + assembly.constant[:, 1]

@@ -14,6 +14,8 @@ velocity the smaller counts.
 motion_supports         fastest vertex of a fixed block
 motion_interpenetration closing velocity at a contact point
 motion_opening          opening of a contact point that carries force: min(force, velocity)
+motion_crushing         end of a joint that crushes whose force is not that of the stresses on its motion:
+                        min(difference, velocity); without forces such a joint counts as one that does not crush
 motion_sliding          slip of a joint whose friction is not at its limit against it: min(slack, velocity)
 motion_against_loads    power that the loads lose, to what they would have if nothing cancelled: only they drive a wall
 
@@ -28,6 +30,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.crushing import block_forces
 from harness.engine.measures import Measures, between
 from harness.engine.residuals import moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
@@ -111,10 +114,13 @@ def motion_residuals(
         part, interfaces = component.assembly, component.interfaces
         opening, slip = relative_velocities(part, motion)
         opening = opening - (part.dilatancy * abs(slip))[:, None]
-        found = {"motion_interpenetration": max(0.0, float((-opening).max(initial=0.0)))}
+        closing = -opening if forces is None else -opening[np.isinf(part.crushing)]
+        found = {"motion_interpenetration": max(0.0, float(closing.max(initial=0.0)))}
         if forces is not None and scale is not None:
             own = scale[interfaces, None]
             found |= _under_force(part, forces[interfaces] / own, part.constant / own, opening, slip)
+            if part.crushes:
+                found |= _on_strips(part, forces[interfaces], own, opening)
         for name, value in found.items():
             residuals[name] = max(residuals.get(name, 0.0), value)
     return residuals
@@ -132,8 +138,16 @@ def _under_force(
     # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2) - c A.
     slack = assembly.friction * forces[:, :2].sum(axis=1) + np.sign(slip) * forces[:, 2]
     slack = slack + np.where(slip > 0.0, strength[:, 2], strength[:, 3])
-    pressed = abs(forces[:, :2] + strength[:, :2])
+    pressed = np.where(np.isinf(assembly.crushing)[:, None], abs(forces[:, :2] + strength[:, :2]), 0.0)
     return {
         "motion_opening": float(np.minimum(pressed, np.maximum(opening, 0.0)).max(initial=0.0)),
         "motion_sliding": float(np.minimum(abs(slack), abs(slip)).max(initial=0.0)),
     }
+
+
+def _on_strips(assembly: Assembly, forces: FloatArray, scale: FloatArray, opening: FloatArray) -> dict[str, float]:
+    """What moves in joints that crush under forces (m, 3) which are not those of the stresses on openings (m, 2)."""
+    crushes = np.isfinite(assembly.crushing)
+    apart = abs(forces[:, :2] - block_forces(assembly, opening)).max(axis=1) / scale[:, 0]
+    moves = abs(opening).max(axis=1)
+    return {"motion_crushing": float(np.minimum(apart, moves)[crushes].max(initial=0.0))}

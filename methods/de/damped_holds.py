@@ -10,6 +10,7 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.deadline import STOPPED, best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.de.answers import solve_by_holds
+from methods.de.crushing import held_by_strips
 from methods.de.engines.engine import Engine, motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
@@ -48,6 +49,9 @@ class DampedHolds(Solver):
         )
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
+        if assembly.crushes:
+            return held_by_strips(assembly, lambda wall: self._of_component(wall, settings))
+
         def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Engine:
             make = PymunkJoints if settings.engine == "pymunk" else SequentialImpulses
             return make(assembly, blocks, joints, settings.iterations, tuning)

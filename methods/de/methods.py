@@ -30,6 +30,7 @@ DE = Listed(
         any_strength=True,
         any_bars=True,
         any_dilatancy=True,
+        any_crushing=True,
         colour="#2f6b3a",
         marker="d",
     ),

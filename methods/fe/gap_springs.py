@@ -29,6 +29,7 @@ from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trac
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.claims import analysed
+from methods.numerics.pressed_search import by_strips
 from methods.numerics.residual_strength import plastic_and_residual
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
@@ -81,6 +82,10 @@ class GapSprings(Solver):
         """Gravity first, then the live load to the plateau under every history asked for."""
         if assembly.breaks and assembly.dilates:
             return refused("brittle joints that dilate are not followed: leave out the dilatancy, or the brittleness")
+        if assembly.breaks and assembly.crushes:
+            return refused(
+                "brittle joints that crush are not followed: leave out the compressive strength, or the brittleness"
+            )
         if assembly.breaks:
             events = self._limits.fewest + self._limits.first * settings.points * assembly.n_interfaces
             most = settings.max_events or events
@@ -90,6 +95,8 @@ class GapSprings(Solver):
         )
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
+        if assembly.crushes:
+            return by_strips(assembly, lambda wall: self._of_component(wall, settings))
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
         if answer.finding != Finding.COLLAPSES and float(assembly.friction.max(initial=0.0)) > settings.friction_cap:
             answer = self._solve(build_model(assembly, settings), settings)

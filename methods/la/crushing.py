@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status
 from methods.la.answers import falls_answer, not_converged, unbounded_answer
 from methods.numerics.stress_blocks import BlockLimit, Greatest
@@ -18,7 +18,20 @@ STATED = 1e-6
 
 
 def crushing_answer(assembly: Assembly, greatest: Greatest) -> Answer:
-    """The answer for a component with joints that crush.
+    """The associated answer for a component with joints that crush; `greatest` solves for a greatest multiplier."""
+    own = dead_load_decides(assembly, greatest)
+    if isinstance(own, Answer):
+        return own
+    found = greatest(assembly, assembly.dead, assembly.live, np.inf)
+    if found.outcome == "unbounded":
+        answer = unbounded_answer("Statically the live load can grow without limit.", found.rounds)
+        answer.forces, answer.forces_multiplier = own, 0.0
+        return answer
+    return _collapse(assembly, found)
+
+
+def dead_load_decides(assembly: Assembly, greatest: Greatest) -> Answer | FloatArray:
+    """The answer where the dead load decides, else the contact forces (m, 3) by which it is borne.
 
     Unloaded joints are within yield and the domain is convex, so that the dead load is borne if and only if its own
     greatest multiplier is one or more; where it is less, the mechanism shows the fall.
@@ -45,12 +58,7 @@ def crushing_answer(assembly: Assembly, greatest: Greatest) -> Answer:
             forces_multiplier=0.0,
             iterations=own.rounds,
         )
-    found = greatest(assembly, assembly.dead, assembly.live, np.inf)
-    if found.outcome == "unbounded":
-        answer = unbounded_answer("Statically the live load can grow without limit.", found.rounds)
-        answer.forces, answer.forces_multiplier = forces, 0.0
-        return answer
-    return _collapse(assembly, found)
+    return forces
 
 
 def _collapse(assembly: Assembly, found: BlockLimit) -> Answer:

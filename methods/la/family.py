@@ -75,11 +75,15 @@ class LimitAnalysisFamily(Solver):
     def _of_component(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """The answer of the dead load where it decides, else that of `answer`, by default the method's own."""
         if assembly.crushes:
-            return crushing_answer(assembly, self.greatest(settings))
+            return self.crushing(assembly, settings, answer)
         problem = make_problem(assembly)
         newton = NewtonMatrix(problem)
         early = dead_load_answer(problem, newton, assembly.has_live_load)
         return early if early is not None else (answer or self.answer)(assembly, problem, newton, settings)
+
+    def crushing(self, assembly: Assembly, settings: Any, answer: Answering | None) -> Answer:
+        """The answer for a component whose joints crush: by default the associated one."""
+        return crushing_answer(assembly, self.greatest(settings))
 
     def greatest(self, settings: Any) -> Greatest:
         """What solves for the greatest multiplier where joints crush.

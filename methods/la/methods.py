@@ -29,6 +29,7 @@ LA = Listed(
         any_strength=True,
         any_brittle=True,
         any_bars=True,
+        any_crushing=True,
         colour="#a8431e",
         marker="s",
     ),

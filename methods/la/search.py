@@ -10,11 +10,14 @@ from harness.model.components import joints_of
 from harness.model.method import Answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.family import LimitAnalysisFamily
+from methods.la.crushing import dead_load_decides
+from methods.la.family import Answering, LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.methods import LA
 from methods.la.sources import from_motions
 from methods.la.sources.search import Choices
+from methods.numerics.pressed_search import StripTolerances, by_strips
+from methods.numerics.stress_blocks import greatest_by_chords
 from methods.springs.warm_up import load_kernels
 
 load_kernels()
@@ -25,10 +28,13 @@ class LimitAnalysis(LimitAnalysisFamily):
 
     Args:
         choices: how its search solves its programmes.
+        strips: how walls whose joints crush are set in.
     """
 
-    def __init__(self, choices: Choices = Choices()) -> None:
-        self._choices = choices
+    def __init__(
+        self, choices: Choices = Choices(), strips: StripTolerances = StripTolerances(rounds=6, least=True)
+    ) -> None:
+        self._choices, self._strips = choices, strips
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The search that the settings ask for, and a lower bound where they ask for one."""
@@ -38,6 +44,14 @@ class LimitAnalysis(LimitAnalysisFamily):
         from methods.la.bounds import with_bound  # the relaxation, which most searches do without
 
         return with_bound(assembly, problem, known, settings.bound)
+
+    def crushing(self, assembly: Assembly, settings: Any, answer: Answering | None) -> Answer:
+        """The least of the states of the stress blocks that walls with joints set in lead to; nothing is proved."""
+        early = dead_load_decides(assembly, greatest_by_chords)
+        if isinstance(early, Answer):
+            return early
+        unproved = settings.model_copy(update={"bound_seconds": 0.0})
+        return by_strips(assembly, lambda wall: self._of_component(wall, unproved, answer), self._strips)
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.

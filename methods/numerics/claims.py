@@ -234,7 +234,7 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
 def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
-        growth = _growing_forces(assembly)
+        growth = growing_forces(assembly)
         forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
         if growth is None or forces is None:
             return answer
@@ -265,7 +265,7 @@ def _fall_of_strong(assembly: Assembly) -> FloatArray | None:
     return found[2] if found is not None and found[0] < 0.0 else None
 
 
-def _growing_forces(assembly: Assembly) -> FloatArray | None:
+def growing_forces(assembly: Assembly) -> FloatArray | None:
     """Forces (m, 3) that bear the live load and any multiple of it, as no strength of a joint does; None if none."""
     rigid = np.isinf(assembly.crushing)
     found = admissible_forces(assembly.without_strength.with_joints(rigid), assembly.live)

@@ -85,7 +85,7 @@ def greatest_by_chords(
     options: ChordTolerances = ChordTolerances(),
 ) -> BlockLimit:
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by linear programmes with a known gap."""
-    programme = _Programme(assembly, dead, live, most, options)
+    programme = _LineProgramme(assembly, dead, live, most, options)
     best, upper, motion = BlockLimit("unknown"), np.inf, None
     size, gap = programme.per_unit, np.inf
     for rounds in range(1, options.rounds + 1):
@@ -131,7 +131,7 @@ class _Found:
     motion: FloatArray
 
 
-class _Programme:
+class _LineProgramme:
     """Statics of a wall with lines in place of the parabolas of its k joints that crush; two ends a joint, 2k ends."""
 
     def __init__(

@@ -1,0 +1,206 @@
+"""The answer of a method for a wall whose joints crush, from its answers for walls whose joints are set in.
+
+The forces that a method finds tell how far joints are pressed, `methods.numerics.pressed_strips` sets them in by that,
+and the method answers again. At the end the collapse state of the wall that is set in is that of the stress blocks too:
+`methods.numerics.pressed_state` finds no other multiplier beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import OutOfTime, best_so_far
+from harness.model.method import Answer, Finding, Status
+from methods.numerics.claims import growing_forces
+from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
+from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
+from methods.numerics.stress_blocks import greatest_by_chords
+
+Solve = Callable[[Assembly], Answer]
+
+
+@dataclass(frozen=True)
+class StripTolerances:
+    """When shares and answers belong to each other.
+
+    Attributes:
+        agrees: difference of the multipliers of a wall that is set in and of the stress blocks, relative to them or to
+            the load unit; the second is exact, and their distance shows that its shares lead to it.
+        settled: change of shares at which forces of rest are within the stress blocks to rounding.
+        most: share above which a joint has no length left to set in.
+        rounds: of answers, at most.
+        least: the method looks for the least state, so that any exact one is an answer, and the least of them the best.
+    """
+
+    agrees: float = 1e-6
+    settled: float = 1e-12
+    most: float = 0.999
+    rounds: int = 20
+    least: bool = False
+
+
+def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = StripTolerances()) -> Answer:
+    """The answer for a component whose joints crush; where the time is over, that with the least state known.
+
+    Args:
+        assembly: the component; solve: answers for the same with joints that do not crush and are set in.
+        options: when it is found.
+    """
+    found: list[_StateOfStrips] = []
+
+    def known() -> Answer:
+        if not (found and options.least):
+            raise OutOfTime
+        answer = _with_state(_least(found), len(found))
+        return replace(answer, details=answer.details | {"stopped_by_limit": True})
+
+    return best_so_far(lambda: _to_its_end(assembly, solve, options, found), known)
+
+
+@dataclass(frozen=True, eq=False)
+class _StateOfStrips:
+    """An exact state of the stress blocks, and the answer for the wall set in that led to it."""
+
+    state: PressedState
+    answer: Answer
+
+
+def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, found: list[_StateOfStrips]) -> Answer:
+    """As `by_strips`, in as many rounds as there may be; `found` gets the exact states."""
+    share = stood = np.zeros(assembly.n_interfaces)
+    answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
+    for rounds in range(1, options.rounds + 1):
+        wall = set_in(assembly, share)
+        answer = solve(wall)
+        lost = answer.finding in (Finding.FALLS, Finding.NONE) and answer.status is not Status.REFUSED
+        if lost and abs(share - stood).max() > 0.0 and falling_mechanism(assembly) is None:
+            share = 0.5 * (share + stood)  # pressed by forces of a state that is further from this one
+            continue
+        ends = ends_at(assembly, answer)
+        if ends is not None:
+            return ends
+        assert answer.forces is not None
+        stood, forces = share, at_ends(share, answer.forces)
+        if answer.finding is Finding.COLLAPSES:
+            state = _state_beside(assembly, wall, answer, forces)
+            if state is not None:
+                found.append(_StateOfStrips(state, answer))
+                if _agree(assembly, answer, state, options.agrees):
+                    return _with_state(_least(found) if options.least else found[-1], rounds)
+                forces = state.forces
+        share = np.minimum(pressed_shares(assembly, forces), options.most)
+        if answer.finding is Finding.STANDS and abs(share - stood).max() <= options.settled:
+            return replace(answer, forces=forces)
+    if found and options.least:
+        return _with_state(_least(found), options.rounds)
+    near = "" if answer.multiplier is None else f"; the last of them collapses at {answer.multiplier:.6g}"
+    return not_found(
+        assembly,
+        answer,
+        f"no collapse state of the joints that crush belongs to any of {options.rounds} walls whose joints were set in "
+        f"by what they press{near}",
+    )
+
+
+def ends_at(assembly: Assembly, answer: Answer) -> Answer | None:
+    """The answer where that for a wall set in leaves nothing to follow; None where it has forces to go on from."""
+    if answer.finding is Finding.FALLS:
+        proof = falling_mechanism(assembly)
+        return answer if proof is None else _falls(answer, proof)
+    if answer.finding is Finding.UNBOUNDED:
+        return _without_end(assembly, answer)
+    goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow != "associated"
+    if goes_on or answer.status is Status.REFUSED:
+        return None if goes_on else answer
+    return no_answer(answer, f"a wall whose joints are set in has no answer to go on from: {answer.sentence}")
+
+
+def _least(found: list[_StateOfStrips]) -> _StateOfStrips:
+    return min(found, key=lambda one: one.state.multiplier)
+
+
+def falling_mechanism(assembly: Assembly) -> FloatArray | None:
+    """A dilatant mechanism (n, 3) on which the dead load does more work than the joints take; None if none is found."""
+    own = greatest_by_chords(assembly, np.zeros_like(assembly.dead), assembly.dead, 2.0)
+    return own.mechanism if own.upper < 1.0 else None
+
+
+def _with_state(found: _StateOfStrips, rounds: int) -> Answer:
+    """The answer with an exact state of the stress blocks in place of that of a wall that is set in."""
+    answer, state = found.answer, found.state
+    details = {name: value for name, value in answer.details.items() if name not in _OF_OTHER_JOINTS}
+    return replace(
+        answer,
+        sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state "
+        f"of their stress blocks, from {rounds} walls whose joints were set in to the middle of what they press.",
+        multiplier=state.multiplier,
+        forces=state.forces,
+        forces_multiplier=state.multiplier,
+        mechanism=state.mechanism,
+        details=details | {"set_in_walls": rounds},
+    )
+
+
+_OF_OTHER_JOINTS = (
+    *("proved_least", "lower_bound", "proof_nodes", "certificate", "certified_bound", "rational_confirmation"),
+    *("associated", "starts_at_least_known", "starts_agree", "residuals", "work_multiplier", "plateau"),
+)
+"""Details of answers that are true of the wall that is set in alone."""
+
+
+def _state_beside(assembly: Assembly, wall: Assembly, answer: Answer, forces: FloatArray) -> PressedState | None:
+    """The exact state of the stress blocks by the mechanism of an answer for a wall set in; None without any."""
+    if answer.mechanism is None:
+        return None
+    state = exact_state(assembly, forces, moving_rows(wall, answer.mechanism))
+    return state if state is not None and state.multiplier > 0.0 else None
+
+
+def _agree(assembly: Assembly, answer: Answer, state: PressedState, within: float) -> bool:
+    assert answer.multiplier is not None
+    size = max(assembly.load_unit, state.multiplier)
+    return abs(answer.multiplier - state.multiplier) <= within * size
+
+
+def _without_end(assembly: Assembly, answer: Answer) -> Answer:
+    """The answer where the live load grows for ever in joints that do not crush; else nothing is known."""
+    if growing_forces(assembly) is not None:
+        return replace(answer, forces=None, forces_multiplier=None)
+    return no_answer(
+        answer,
+        "the live load presses joints the more the greater it is, until they crush evenly, which is not followed; "
+        "la-associated gives the upper bound",
+    )
+
+
+def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
+    """The answer where statics shows that the dead load is not borne, by a dilatant mechanism (n, 3)."""
+    sentence = "the wall falls under its dead load: no equilibrium within the stress blocks exists, whatever the flow"
+    return replace(
+        no_answer(answer, sentence), status=Status.OK, finding=Finding.FALLS, mechanism=mechanism, flow="associated"
+    )
+
+
+def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
+    proof = falling_mechanism(assembly)
+    return no_answer(answer, sentence) if proof is None else _falls(answer, proof)
+
+
+def no_answer(answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence; its way and its details stay."""
+    return replace(
+        answer,
+        status=Status.NOT_CONVERGED,
+        finding=Finding.NONE,
+        sentence=sentence,
+        multiplier=None,
+        bracket=None,
+        forces=None,
+        forces_multiplier=None,
+        mechanism=None,
+    )

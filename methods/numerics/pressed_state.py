@@ -1,0 +1,196 @@
+"""The exact collapse state of joints that crush, near that of a wall whose joints are set in: Newton's method.
+
+The state found says which joints open, at which end, and which slip. With these the limits of all joints are replaced
+by their tangents at the forces F known so far: of a stress block
+
+    (1 - a) m1 - a m2 + a^2 F0 / 2 >= 0,   m_i = n_i + T/2,   a = F / F0,
+
+and the same with both ends exchanged. They are equations where the joint moves, else inequalities. Of all forces in
+equilibrium those nearest to what was known follow, with the multiplier; and so on until F does not change. The rows are
+the flow vectors too: a joint turns about the inner edge of its strip, and slips by its own dilatancy. A mechanism of
+these, without motion elsewhere, completes the state; where there is none, the joints that move are others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.joint_law import block_diagonal
+from methods.numerics.pressed_strips import pressed_shares
+
+
+@dataclass(frozen=True)
+class StateTolerances:
+    """When the forces of a state are exact.
+
+    Attributes:
+        moving: rate of a joint, beside the fastest, above which it moves; mechanisms of methods are good to 1e-8.
+        settled: change of a pressed share at which the tangents are those at the forces: the error is its square.
+        rounds: of tangents, at most. Each squares the change.
+    """
+
+    moving: float = 1e-7
+    settled: float = 1e-8
+    rounds: int = 12
+
+
+@dataclass(frozen=True, eq=False)
+class PressedState:
+    """A collapse state: its multiplier, contact forces (m, 3) [force] and mechanism (n, 3)."""
+
+    multiplier: float
+    forces: FloatArray
+    mechanism: FloatArray
+
+
+def moving_rows(wall: Assembly, mechanism: FloatArray, options: StateTolerances = StateTolerances()) -> BoolArray:
+    """(m, 4) rows of the joint law along which the joints of a wall move in a mechanism (n, 3)."""
+    strains = (wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3)
+    rates = wall.law.rates(strains)
+    return np.asarray(rates > options.moving * abs(strains).max())
+
+
+def exact_state(
+    assembly: Assembly, forces: FloatArray, moving: BoolArray, options: StateTolerances = StateTolerances()
+) -> PressedState | None:
+    """The collapse state in which the rows `moving` (m, 4) move, with forces near these (m, 3); None without any."""
+    known = forces
+    for _ in range(options.rounds):
+        share = pressed_shares(assembly, known)
+        found = _nearest_forces(assembly, share, moving, forces)
+        if found is None:
+            return None
+        known, multiplier = found
+        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= options.settled:
+            break
+    else:
+        return None
+    mechanism = _mechanism(assembly, pressed_shares(assembly, known), moving)
+    return None if mechanism is None else PressedState(multiplier, known, mechanism)
+
+
+def _tangents(assembly: Assembly, share: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Rows S (m, 4, 3), constants s0 (m, 4) and flow E (m, 3, 4) of the law, linear about pressed shares (m,)."""
+    law = assembly.law
+    rows, flow, constant = law.rows.copy(), law.flow.copy(), law.constant.copy()
+    turn = np.stack([np.stack([1.0 - share, -share], axis=1), np.stack([-share, 1.0 - share], axis=1)], axis=1)
+    rows[:, :2, :2] = turn
+    flow[:, :2, :2] = turn.transpose(0, 2, 1)
+    full = np.where(np.isfinite(assembly.crushing), assembly.crushing + constant[:, 0] + constant[:, 1], 0.0)
+    constant[:, :2] = (turn * law.constant[:, None, :2]).sum(axis=2) + (0.5 * share**2 * full)[:, None]
+    return rows, constant, flow
+
+
+def held_forces(
+    assembly: Assembly, forces: FloatArray, multiplier: float, options: StateTolerances = StateTolerances()
+) -> FloatArray | None:
+    """The contact forces (m, 3) within the stress blocks that bear a multiplier, near others; None without any."""
+    known, rests = forces, np.zeros((assembly.n_interfaces, 4), dtype=bool)
+    for _ in range(options.rounds):
+        share = pressed_shares(assembly, known)
+        found = _nearest_forces(assembly, share, rests, forces, multiplier)
+        if found is None:
+            return None
+        known = found[0]
+        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= options.settled:
+            return known
+    return None
+
+
+def _nearest_forces(
+    assembly: Assembly, share: FloatArray, moving: BoolArray, near: FloatArray, multiplier: float | None = None
+) -> tuple[FloatArray, float] | None:
+    """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given."""
+    from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
+
+    m, n = assembly.n_interfaces, assembly.n_free
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    unit = assembly.force_scale / n
+    rows, constant, _ = _tangents(assembly, share)
+    statics = (assembly.kinematic_matrix @ sp.diags(column)).T
+    dead, live = (part * column for part in assembly.free_loads())
+    live = live * (assembly.load_unit / unit)
+    apart = sp.identity(3 * m, format="csr")
+    matrix = sp.bmat(
+        [
+            [statics, sp.csr_matrix(live[:, None]), None],
+            [block_diagonal(rows), None, None],
+            [apart, None, sp.hstack([-apart, apart])],
+        ]
+    )
+    slack, target = -constant.ravel() / unit, near.ravel() / unit
+    most = np.where(moving.ravel(), slack, INFINITY)
+    at = (-INFINITY, INFINITY) if multiplier is None else (multiplier / assembly.load_unit,) * 2
+    free, none, parts = np.full(3 * m, INFINITY), np.zeros(6 * m), np.full(6 * m, INFINITY)
+    programme = Programme(
+        sp.csc_matrix(matrix),
+        np.append(np.zeros(3 * m + 1), np.ones(6 * m)),
+        (np.concatenate([-free, at[:1], none]), np.concatenate([free, at[1:], parts])),
+        (np.concatenate([-dead / unit, slack, target]), np.concatenate([-dead / unit, most, target])),
+    )
+    status, _, _ = programme.run()
+    vertex = programme.vertex() if status == "optimal" else None
+    if vertex is None or not vertex.feasible:
+        return None
+    return vertex.value[: 3 * m].reshape(-1, 3) * unit, float(vertex.value[3 * m]) * assembly.load_unit
+
+
+def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> tuple[FloatArray, float] | None:
+    """The motion (n, 3) of joints that press shares (m,) nearest to rates (m, 4), along rows that move in these alone.
+
+    Returns:
+        The motion, and the largest difference of a rate beside the largest rate; None where the programme fails.
+    """
+    from methods.numerics.linear_programme import INFINITY, Programme
+
+    m, n = assembly.n_interfaces, assembly.n_free
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    _, _, flow = _tangents(assembly, share)
+    strains, own = assembly.kinematic_matrix @ sp.diags(column), sp.identity(4 * m, format="csr")
+    matrix = sp.bmat([[strains, -block_diagonal(flow), None], [None, own, sp.hstack([-own, own])]])
+    target = np.maximum(rates, 0.0).ravel() / rates.max()
+    speeds, none, parts = np.full(3 * n, INFINITY), np.zeros(12 * m), np.full(8 * m, INFINITY)
+    right = np.append(np.zeros(3 * m), target)
+    programme = Programme(
+        sp.csc_matrix(matrix),
+        np.append(np.zeros(3 * n + 4 * m), np.ones(8 * m)),
+        (np.append(-speeds, none), np.concatenate([speeds, np.where(target > 0.0, INFINITY, 0.0), parts])),
+        (right, right),
+    )
+    status, value, _ = programme.run()
+    if status != "optimal":
+        return None
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    mechanism[assembly.free] = (value[: 3 * n] * column).reshape(-1, 3)
+    return mechanism, float(abs(value[3 * n : 3 * n + 4 * m] - target).max())
+
+
+def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> FloatArray | None:
+    """A mechanism (n, 3) of positive live work whose joints move along the rows `moving` (m, 4) alone; None if none."""
+    from methods.numerics.linear_programme import INFINITY, Programme
+
+    m, n = assembly.n_interfaces, assembly.n_free
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    _, _, flow = _tangents(assembly, share)
+    live = assembly.free_loads()[1] * column
+    strains = assembly.kinematic_matrix @ sp.diags(column)
+    matrix = sp.bmat([[strains, -block_diagonal(flow)], [sp.csr_matrix(live[None, :] / abs(live).sum()), None]])
+    speeds = np.full(3 * n, INFINITY)
+    right = np.append(np.zeros(3 * m), 1.0)
+    programme = Programme(
+        sp.csc_matrix(matrix),
+        np.zeros(3 * n + 4 * m),
+        (np.append(-speeds, np.zeros(4 * m)), np.append(speeds, np.where(moving.ravel(), INFINITY, 0.0))),
+        (right, right),
+    )
+    status, _, _ = programme.run()
+    vertex = programme.vertex() if status == "optimal" else None
+    if vertex is None or not vertex.feasible:
+        return None
+    mechanism = np.zeros((assembly.n_blocks, 3))
+    mechanism[assembly.free] = (vertex.value[: 3 * n] * column).reshape(-1, 3)
+    return mechanism

@@ -1,0 +1,133 @@
+"""Joints that crush in distinct elements: brackets about the values of statics, and motions that the judge checks."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from harness.engine.crushing import block_forces
+from harness.engine.judge import answered, judge
+from harness.engine.measured_motion import motion_faults
+from harness.model.assembly import Assembly
+from harness.model.details import MOVING_FORCES
+from harness.model.method import Finding, Status, load_method
+from harness.model.result import Result, residual_of
+from methods.numerics.pressed_state import nearest_motion
+from methods.numerics.pressed_strips import pressed_shares, set_in
+from tests.walls import assembly, stack
+
+BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
+ACCURACY = 5e-3
+
+
+def found(wall: Assembly) -> Result:
+    """The answer of `de`, which the judge accepts."""
+    result, judgement = answered(load_method("de"), wall)
+    assert judgement.accepted, result.sentence + judgement.sentence
+    return result
+
+
+def arch(strength: float, **more: Any) -> Assembly:
+    ring = {"type": "ring", "inner_radius": 0.925, "outer_radius": 1.075, "count": 20}
+    return assembly(ring, 1e3, unit_weight=1.0, compressive_strength=strength, **more)
+
+
+@cache
+def of_weak_arch() -> tuple[Assembly, Result]:
+    wall = arch(5.0)
+    return wall, found(wall)
+
+
+@pytest.mark.parametrize(("height", "value"), [(2.0, 0.16), (4.0, 0.06), (8.0, 0.01)])
+def test_pier_overturns_about_the_edge_of_its_pressed_strip(height: float, value: float):
+    result = found(assembly(stack(1, 0.4, height), 1.0, compressive_strength=200.0))
+    assert result.multiplier == pytest.approx(value, rel=ACCURACY)
+    assert result.bracket is not None
+    assert result.bracket[0] <= value * (1.0 + 1e-9)
+
+
+def test_tension_widens_the_pressed_strip():
+    wall = assembly(stack(1, 0.4, 2.0), 1.0, cohesion=8.0, tensile_strength=4.0, compressive_strength=200.0)
+    result = found(wall)
+    assert result.multiplier == pytest.approx(0.1725490, rel=ACCURACY)
+    residual = residual_of(result)
+    assert residual is not None
+    assert residual.multiplier == pytest.approx(0.16, rel=ACCURACY)
+
+
+@pytest.mark.parametrize(("strength", "value"), [(100.0, 0.1434694), (20.0, 0.1184576)])
+def test_semicircle(strength: float, value: float):
+    assert found(arch(strength)).multiplier == pytest.approx(value, rel=ACCURACY)
+
+
+def test_semicircle_of_weak_joints():
+    assert of_weak_arch()[1].multiplier == pytest.approx(0.0247402, rel=ACCURACY)
+
+
+def test_semicircle_falls_below_the_least_strength_and_stands_above():
+    for live in ({"loads": {}}, {}):
+        assert found(arch(4.1, **live)).finding is Finding.FALLS
+    assert found(arch(4.4, loads={})).finding is Finding.STANDS
+
+
+def test_wall_of_bricks_slides_and_crushes_where_fe_has_its_plateau():
+    result = found(assembly(BOND, 0.65, unit_weight=1.0, compressive_strength=100.0))
+    assert result.bracket is not None
+    assert result.bracket[0] <= 0.5515217391 <= result.bracket[1]
+    assert result.multiplier == pytest.approx(0.5515217391, rel=ACCURACY)
+
+
+def test_wall_that_presses_more_than_half_of_a_joint_has_no_answer_rather_than_a_wrong_one():
+    result, _ = answered(load_method("de"), assembly(BOND, 0.65, unit_weight=1.0, compressive_strength=20.0))
+    assert result.status is Status.NOT_CONVERGED
+    assert result.bracket is None
+    assert "turn otherwise" in result.sentence
+
+
+def test_load_that_presses_evenly_is_not_followed():
+    loads = {"live": {"body": [{"per_weight": [0, -1]}]}}
+    result, _ = answered(load_method("de"), assembly(stack(1, 1.0, 0.2), 0.5, compressive_strength=40.0, loads=loads))
+    assert result.status is Status.NOT_CONVERGED
+
+
+@pytest.mark.parametrize("change", ["higher", "middles", "ends", "no forces", "weaker"])
+def test_wrong_answers_are_rejected(change: str):
+    wall, result = of_weak_arch()
+    forces = np.asarray(result.details[MOVING_FORCES])
+    assert result.bracket is not None
+    if change == "higher":
+        changed = result.model_copy(update={"bracket": (result.bracket[1], 1.01 * result.bracket[1])})
+    elif change == "weaker":
+        wall = arch(4.98)
+        changed = result
+    elif change == "no forces":  # ends close, with nothing that shows what they press
+        details = {name: value for name, value in result.details.items() if name != MOVING_FORCES}
+        mechanism = np.asarray(result.mechanism)
+        with_forces, without = (
+            motion_faults(wall, mechanism, result.bracket[1], given)[0]["motion_interpenetration"]
+            for given in (result.details, details)
+        )
+        assert with_forces == 0.0
+        assert without > 0.02
+        return
+    else:
+        share = pressed_shares(wall, forces)
+        other = set_in(wall, share) if change == "middles" else wall
+        mechanism = np.asarray(result.mechanism)
+        rates = wall.law.rates((wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3))
+        turned = nearest_motion(other, np.zeros_like(share), rates)
+        assert turned is not None
+        changed = result.model_copy(update={"mechanism": turned[0].tolist()})
+    assert judge(wall, changed, 1e-6).accepted is False
+
+
+def test_forces_of_the_stress_block_by_hand():
+    """F0 = 8: one end closes by 1, the other opens by 3, so that a quarter bears 2, an eighth from its end."""
+    wall = assembly(stack(1, 1.0, 0.2), 0.5, compressive_strength=8.0)
+    assert block_forces(wall, np.array([[-1.0, 3.0]])) == pytest.approx(np.array([[1.75, 0.25]]))
+    assert block_forces(wall, np.array([[3.0, -1.0]])) == pytest.approx(np.array([[0.25, 1.75]]))
+    assert block_forces(wall, np.array([[-1.0, -2.0]])) == pytest.approx(np.array([[4.0, 4.0]]))
+    assert block_forces(wall, np.array([[1.0, 2.0]])) == pytest.approx(np.zeros((1, 2)))
