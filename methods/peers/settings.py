@@ -1,0 +1,3 @@
+"""Settings of the peers."""
+
+from __future__ import annotations
