@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from harness.model.joint_law import block_diagonal
-from methods.peers.answers import Ended, ProgrammePeer
+from methods.peers.answers import Ended, ProgrammePeer, time_left
 from methods.peers.programme import CollapseProgramme
 from methods.peers.settings import DiscoptSettings
 
@@ -18,9 +18,7 @@ class Discopt(ProgrammePeer):
 
     name, package, extra = "discopt", "discopt", "discopt"
 
-    def ended(
-        self, package: Any, programme: CollapseProgramme, seconds: float, settings: DiscoptSettings
-    ) -> Ended | str:
+    def ended(self, package: Any, programme: CollapseProgramme, settings: DiscoptSettings) -> Ended | str:
         """Where discopt ends; its clock counts seconds of the wall clock."""
         if not (np.isfinite(programme.greatest) and np.isfinite(programme.greatest_slack).all()):
             return (
@@ -29,7 +27,9 @@ class Discopt(ProgrammePeer):
             )
         model = package.Model("limit_analysis")
         _write(model, programme, settings.greatest_rate)
-        found = model.solve(time_limit=min(seconds, 1e6), gap_tolerance=settings.gap, threads=1, deterministic=True)
+        found = model.solve(
+            time_limit=time_left(settings.seconds), gap_tolerance=settings.gap, threads=1, deterministic=True
+        )
         values = found.x or {}
         best = found.objective is not None and "slacks" in values
         return Ended(

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.peers.answers import Ended, ProgrammePeer
+from methods.peers.answers import Ended, ProgrammePeer, time_left
 from methods.peers.programme import CollapseProgramme
 from methods.peers.settings import PounceSettings
 
@@ -76,9 +76,7 @@ class Pounce(ProgrammePeer):
 
     name, package, extra = "pounce", "pounce", "pounce"
 
-    def ended(
-        self, package: Any, programme: CollapseProgramme, seconds: float, settings: PounceSettings
-    ) -> Ended | str:
+    def ended(self, package: Any, programme: CollapseProgramme, settings: PounceSettings) -> Ended | str:
         """Where the last relaxation ends, from the one before; the first begins at small rates and no forces."""
         m, size, functions = programme.assembly.n_interfaces, programme.unknowns, _Functions(programme)
         lower, upper = np.full(size, -np.inf), np.full(size, np.inf)
@@ -89,7 +87,7 @@ class Pounce(ProgrammePeer):
         most = np.concatenate([-programme.dead, np.full(4 * m, np.inf), np.zeros(3 * m), [functions.live_work, 0.0]])
         began, iterations, said = time.perf_counter(), 0, ""
         for epsilon in settings.epsilons:
-            left = seconds - (time.perf_counter() - began)
+            left = time_left(settings.seconds - (time.perf_counter() - began))
             if left <= 0.0:
                 break
             most[-1] = epsilon
@@ -99,7 +97,7 @@ class Pounce(ProgrammePeer):
                 ("sb", "yes"),
                 ("tol", 1e-9),
                 ("max_iter", settings.most_iterations),
-                ("max_wall_time", min(left, 1e6)),
+                ("max_wall_time", left),
             ):
                 problem.add_option(option, value)
             point, told = problem.solve(point)

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from methods.peers.answers import Ended, ProgrammePeer
+from harness.model.deadline import best_so_far
+from methods.peers.answers import Ended, ProgrammePeer, time_left
 from methods.peers.programme import CollapseProgramme
 from methods.peers.settings import ScipSettings
 
@@ -17,15 +18,15 @@ class Scip(ProgrammePeer):
 
     name, package, extra = "scip", "pyscipopt", "scip"
 
-    def ended(self, package: Any, programme: CollapseProgramme, seconds: float, settings: ScipSettings) -> Ended | str:
-        """Where SCIP ends; its clock counts CPU seconds."""
+    def ended(self, package: Any, programme: CollapseProgramme, settings: ScipSettings) -> Ended | str:
+        """Where SCIP ends; its clock is set to that of the wall, like that of the run."""
         model = package.Model()
         model.hideOutput()
-        model.setParam("timing/clocktype", 1)
-        model.setParam("limits/time", min(seconds, 1e20))
+        model.setParam("timing/clocktype", 2)
         model.setParam("randomization/randomseedshift", settings.seed)
         multiplier, slacks, rates = _programme(package, model, programme)
-        model.optimize()
+        model.setParam("limits/time", time_left(settings.seconds))
+        best_so_far(model.optimize, lambda: None)
         said, best = str(model.getStatus()), model.getNSols() > 0
         bound = float(model.getDualbound())
         return Ended(

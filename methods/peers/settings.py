@@ -11,7 +11,7 @@ class ScipSettings(Settings):
     """Settings of `scip`.
 
     Attributes:
-        seconds: of CPU time; what is found by then is the answer.
+        seconds: of the wall clock; what is found by then is the answer.
         seed: shift of all of its random seeds.
     """
 
@@ -38,7 +38,7 @@ class PounceSettings(Settings):
     """Settings of `pounce`.
 
     Attributes:
-        seconds: of the wall clock, for each relaxation.
+        seconds: of the wall clock; the relaxation reached by then is the answer.
         epsilons: bounds on y.g relative to the live work, in order.
         most_iterations: of each relaxation.
         greatest_rate: bound on every opening and slip, as a multiple of the mean live displacement of a block.
