@@ -1,8 +1,8 @@
 """Peers beside ours on a set of walls: answered, correct, error, CPU, failures, and the bounds that they claim.
 
-Run as `python -m benchmarks peers [--methods NAMES] [--set core] [--seconds 60]`. Without names it runs `la`, `fe`,
-`de`, `la-associated` and every peer whose package is installed, all of them on one wall before the next. Counts are of
-all walls of the set. The last lines hold every bound that a method claims against the states that are known and the
+Run as `python -m benchmarks peers [--methods NAMES] [--set core] [--seconds 60] [--store FILE]`. Without names it runs
+`la`, `fe`, `de`, `la-associated` and every peer whose package is installed, all of them on one wall before the next.
+Counts are of all walls of the set. The last lines hold every bound that a method claims against the states that are known and the
 certificates of the walls; none of these bounds is called proved.
 """
 
@@ -89,10 +89,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--methods", help="names, separated by commas")
     parser.add_argument("--set", default="core", choices=set_names())
     parser.add_argument("--seconds", type=float, default=60.0, help="limit of a run, of the wall clock")
+    parser.add_argument("--store", help="file in which results are kept, and found again")
     given = parser.parse_args(arguments)
     methods = given.methods.split(",") if given.methods else [*OURS, *installed_peers()]
     chosen = wall_set(given.set)
-    compared = compare(chosen.walls, methods, seconds=given.seconds, told=lambda *_: None)
+    compared = compare(chosen.walls, methods, seconds=given.seconds, store=given.store)
     bench = Bench(rows_of(chosen, compared, machine_speed()))
     say(f"{len(chosen.walls)} walls of the set {chosen.name}, version {chosen.version}; {given.seconds:g} s a run")
     _print_summary(bench)

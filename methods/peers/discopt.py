@@ -49,7 +49,8 @@ def _write(model: Any, programme: CollapseProgramme, greatest_rate: float) -> No
     multiplier = model.continuous("multiplier", lb=0.0, ub=programme.greatest * (1.0 + 1e-6) + 1e-6)
     slacks = model.continuous("slacks", shape=(4 * m,), lb=0.0, ub=programme.greatest_slack)
     rates = model.continuous("rates", shape=(4 * m,), lb=0.0, ub=greatest_rate)
-    velocities = model.continuous("velocities", shape=(3 * n,))
+    fastest = programme.greatest_speed(greatest_rate)
+    velocities = model.continuous("velocities", shape=(3 * n,), lb=-fastest, ub=fastest)
 
     def row(*terms: tuple[Any, Any]) -> Any:
         parts = [float(c[k]) * v[int(k)] for c, v in terms for k in np.flatnonzero(c)]

@@ -85,17 +85,17 @@ class CollapseProgramme:
         rows = (np.append(-self.dead, none), np.append(-self.dead, np.full(len(none), INFINITY)))
         return Programme(matrix, cost, (lower, upper), rows)
 
-    def motion_programme(self, still: FloatArray) -> Programme:
+    def motion_programme(self, greatest: FloatArray) -> Programme:
         """Linear programme of velocities and rates (3n + 4m,) of live work n with the least sum of rates.
 
         Args:
-            still: (4m,) greatest rates, zero or infinite.
+            greatest: (4m,) bounds on the rates.
         """
         n, m = self.assembly.n_free, self.assembly.n_interfaces
         work = sp.hstack([sp.csr_matrix(self.live[None, :]), sp.csr_matrix((1, 4 * m))])
         matrix = sp.csc_matrix(sp.vstack([sp.hstack([self.kinematic, -self.flow]), work]))
         free = np.full(3 * n, INFINITY)
-        columns = (np.append(-free, np.zeros(4 * m)), np.append(free, still))
+        columns = (np.append(-free, np.zeros(4 * m)), np.append(free, greatest))
         rows = np.append(np.zeros(3 * m), float(n))
         return Programme(matrix, np.append(np.zeros(3 * n), np.ones(4 * m)), columns, (rows, rows))
 
@@ -111,6 +111,20 @@ class CollapseProgramme:
         """(4m,) greatest slacks that statics allows; infinite where self-stress has no end."""
         found = np.array([-self._extreme(-row) for row in self._slack_rows.toarray()])
         return np.asarray(found + _ROUNDING * (1.0 + abs(found)))
+
+    def greatest_speed(self, greatest_rate: float) -> FloatArray:
+        """(3n,) greatest velocities, either way, of motions with rates within a bound; infinite where not known."""
+        columns = 3 * self.assembly.n_free
+        programme = self.motion_programme(np.full(4 * self.assembly.n_interfaces, greatest_rate))
+        programme.set_costs(columns, np.zeros(4 * self.assembly.n_interfaces))
+        found = np.zeros(columns)
+        for k in range(columns):
+            for sign in (1.0, -1.0):
+                programme.set_costs(k, np.array([sign]))
+                status, values, _ = programme.run()
+                found[k] = max(found[k], -sign * values[k] if status == "optimal" else np.inf)
+            programme.set_costs(k, np.zeros(1))
+        return found * (1.0 + _ROUNDING) + _ROUNDING
 
     def _normal(self, interface: int) -> FloatArray:
         cost = np.zeros(3 * self.assembly.n_interfaces + 1)
