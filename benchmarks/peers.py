@@ -2,8 +2,8 @@
 
 Run as `python -m benchmarks peers [--methods NAMES] [--set core] [--seconds 60] [--store FILE]`. Without names it runs
 `la`, `fe`, `de`, `la-associated` and every peer whose package is installed, all of them on one wall before the next.
-Counts are of all walls of the set. The last lines hold every bound that a method claims against the states that are known and the
-certificates of the walls; none of these bounds is called proved.
+Counts are of all walls of the set. The last lines hold every bound that a method claims against the states that are
+known and the certificates of the walls; none of these bounds is called proved.
 """
 
 from __future__ import annotations
