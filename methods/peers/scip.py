@@ -24,7 +24,7 @@ class Scip(ProgrammePeer):
         model.hideOutput()
         model.setParam("timing/clocktype", 2)
         model.setParam("randomization/randomseedshift", settings.seed)
-        multiplier, slacks, rates = _programme(package, model, programme)
+        multiplier, slacks, rates = _programme(package, model, programme, settings.virtual_work)
         model.setParam("limits/time", time_left(settings.seconds))
         best_so_far(model.optimize, lambda: None)
         said, best = str(model.getStatus()), model.getNSols() > 0
@@ -40,7 +40,9 @@ class Scip(ProgrammePeer):
         )
 
 
-def _programme(package: Any, model: Any, programme: CollapseProgramme) -> tuple[Any, list[Any], list[Any]]:
+def _programme(
+    package: Any, model: Any, programme: CollapseProgramme, virtual_work: bool
+) -> tuple[Any, list[Any], list[Any]]:
     """Write the programme into a model of SCIP: the multiplier, the slacks (4m,) and the rates (4m,)."""
     m, n = programme.assembly.n_interfaces, programme.assembly.n_free
     greatest = programme.greatest * (1.0 + 1e-6) + 1e-6  # statics bears no more; to the rounding of that programme
@@ -64,9 +66,10 @@ def _programme(package: Any, model: Any, programme: CollapseProgramme) -> tuple[
     for left, right in pairs:
         model.addCons(left == right)
     model.addCons(package.quicksum(float(f) * u for f, u in zip(programme.live, velocities, strict=True)) == float(n))
-    own, dead_load, friction = programme.virtual_work
-    work = [float(f) * u for f, u in zip([*dead_load, *friction], [*velocities, *rates], strict=True) if f]
-    model.addCons(own * multiplier + package.quicksum(work) >= 0.0)
+    if virtual_work:
+        own, dead_load, friction = programme.virtual_work
+        work = [float(f) * u for f, u in zip([*dead_load, *friction], [*velocities, *rates], strict=True) if f]
+        model.addCons(own * multiplier + package.quicksum(work) >= 0.0)
     for slack, rate in zip(slacks, rates, strict=True):
         model.addConsSOS1([slack, rate])
     return multiplier, slacks, rates

@@ -13,10 +13,12 @@ class ScipSettings(Settings):
     Attributes:
         seconds: of the wall clock; what is found by then is the answer.
         seed: shift of all of its random seeds.
+        virtual_work: whether the row of virtual work is written, without which its bound stays at zero.
     """
 
     seconds: float = Field(default=60.0, gt=0.0)
     seed: int = Field(default=0, ge=0)
+    virtual_work: bool = True
 
 
 class DiscoptSettings(Settings):
