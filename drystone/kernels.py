@@ -8,7 +8,7 @@ from drystone.walls import Wall, new_wall
 from harness.engine.preload import shipped
 from harness.model.errors import InputError, MissingPackage
 from harness.model.library import library
-from harness.model.method import Method, load_method, method_names, prepared
+from harness.model.method import Method, listed_methods, load_method, prepared
 
 FEW, MANY = {"count": 3, "friction": 0.25}, {"length": 8.0, "height": 3.0}
 """Bricks for every method; and more than the 200 blocks above which the quick one takes other loops too."""
@@ -17,7 +17,7 @@ FEW, MANY = {"count": 3, "friction": 0.25}, {"length": 8.0, "height": 3.0}
 def main() -> None:
     """Run every shipped method on a small wall and the quick one on a larger one; what could not be run is printed."""
     small, large = new_wall("stack", **FEW), new_wall("running-bond", **MANY)
-    for name in shipped(method_names()):
+    for name in shipped(listed_methods()):
         method = _ready(name)
         if method is not None:
             for wall in (small, large) if name == library().methods.quick else (small,):

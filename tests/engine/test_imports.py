@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import subprocess
 import sys
@@ -94,8 +95,10 @@ def test_a_listed_method_leads_to_what_solves_it(name: str):
     listed = load_method(name)
     assert isinstance(listed, Listed)
     assert listed.name == name
-    prepared(listed)
     found = resolve_name(listed.solver)
+    package = getattr(found, "package", None)
+    if package is None or importlib.util.find_spec(package) is not None:
+        prepared(listed)
     assert issubclass(found, Solver)
     takes_motions = found.solve_from is not Solver.solve_from
     assert takes_motions == listed.follows_motions
