@@ -15,7 +15,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.pressed_search import ends_at, no_answer, not_found
+from methods.numerics.pressed_search import ends_at, is_lost, no_answer, not_found
 from methods.numerics.pressed_state import held_forces, nearest_motion
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 
@@ -39,15 +39,19 @@ def held_by_strips(
     assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldStrips = HeldStrips()
 ) -> Answer:
     """The answer for a component whose joints crush; `solve` answers for walls that are set in and do not crush."""
-    share, before = np.zeros(assembly.n_interfaces), np.nan
+    share = stood = np.zeros(assembly.n_interfaces)
+    before = np.nan
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
         answer = solve(set_in(assembly, share))
-        ends = ends_at(assembly, answer)
+        if is_lost(assembly, answer) and abs(share - stood).max() > 0.0:
+            share = 0.5 * (share + stood)  # pressed by forces of a load that is further from this one
+            continue
+        ends = ends_at(assembly, answer, share)
         if ends is not None:
             return ends
         assert answer.forces is not None
-        forces = at_ends(share, answer.forces)
+        stood, forces = share, at_ends(share, answer.forces)
         multiplier = answer.multiplier or 0.0
         if answer.finding is Finding.STANDS or abs(multiplier - before) <= options.settled * multiplier:
             held = held_forces(assembly, forces, answer.forces_multiplier or 0.0)
