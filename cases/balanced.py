@@ -157,8 +157,8 @@ def thrusts() -> Iterator[Recipe]:
         {"id": "springer", "polygon": [(0.7, low), (end, low), (end, 0.0), (0.7, 0.0)]},
         {"id": "plane", "polygon": [(0.5, 2 * low), (1.5, 2 * low), (1.5, low), (0.5, low)], "fixed": True},
         {"id": "ground", "polygon": [(-end, low), (-0.7, low), (-0.7, 0.0), (-end, 0.0)], "fixed": True},
-        *({"id": str(k + 1), "polygon": stone} for k, stone in enumerate(stones)),
     ]
+    blocks += [{"id": str(k + 1), "polygon": stone} for k, stone in enumerate(stones)]
     for name, thrust in values.items():
         out = 1.0 if name == "least" else -1.0
         content = wall(
