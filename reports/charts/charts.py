@@ -16,7 +16,7 @@ from reports.labels import numbers
 
 WIDTH, HEIGHT = 560, 330
 LEFT, RIGHT, BOTTOM, TOP = 72, 14, 46, 14
-ROW, PER_ROW = 20, 3
+ROW, PER_ROW, NAMED = 20, 3, 24
 LETTER, NOTE = 10.5, 19
 """Width of a letter, about, and height of a line. On a phone letters are 19 high, which is 11 pixels in a drawing that is
 as wide as the page; on larger screens 12 high in the same places."""
@@ -229,7 +229,8 @@ class Plot:
     def of(cls, chart: Chart) -> Plot:
         """The plot of a chart, as wide as its values."""
         rows = math.ceil(len(chart.series) / chart.per_row) if len(chart.series) > 1 else 0
-        top, height = TOP + (rows + 1) * ROW, HEIGHT + (rows + 1) * ROW  # below its legend and the name of its axis
+        above = rows * ROW + NAMED
+        top, height = TOP + above, HEIGHT + above
         xs = [value for series in chart.series for value in series.x]
         ys = [value for series in chart.series for value in [*series.y, *series.low, *series.high]]
         ys += [value for _, value in chart.levels]
@@ -297,7 +298,7 @@ def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Ma
     texts += Markup('<text x="{:.0f}" y="{}" class="mid axis">{}</text>').format(
         (LEFT + WIDTH - RIGHT) / 2, height - 8, chart.x_label
     )
-    texts += Markup('<text x="4" y="{}" class="axis">{}</text>').format(top - 8, chart.y_label)
+    texts += Markup('<text x="4" y="{}" class="axis">{}</text>').format(top - 12, chart.y_label)
     frame = f"M{LEFT} {top}V{base}H{WIDTH - RIGHT}"
     return Markup('<path class="grid" d="{}"/><path class="frame" d="{}"/>').format(grid, frame) + texts
 
