@@ -169,3 +169,7 @@ def test_lines_are_named_by_what_tells_them_apart():
     assert legend(one, other) == ["fe", "la"]
     assert legend(one, one.assign(case="b")) == ["a", "b"]
     assert legend(one, other.assign(case="b")) == ["a, fe", "b, la"]
+
+
+def test_one_wall_has_a_multiplier_and_no_mean():
+    assert findings(tables_of(walls([0.4])), []) == ["fe: multiplier 0.40000."]
