@@ -161,6 +161,10 @@ def test_friction_takes_all_work_of_a_block_that_slides_on_level_ground():
     normal = 0.5 / assembly.n_interfaces
     result.forces = [(normal / 2, normal / 2, 0.4 * normal)] * assembly.n_interfaces
     assert reasons.friction_share(assembly, result) == pytest.approx(1.0, rel=1e-12)
+    half = samples.solved(case, "fe", 0.41)
+    half.mechanism, half.forces = result.mechanism, [(a, b, 0.5 * shear) for a, b, shear in result.forces]
+    told = " ".join(reasons.reasons(CaseResults(case, [result, half])))
+    assert "Friction takes 100 % of the live load’s work in la and 49 % in fe." in told
 
 
 def test_reason_names_what_moves_in_one_only():
