@@ -18,8 +18,8 @@ WIDTH, HEIGHT = 560, 330
 LEFT, RIGHT, BOTTOM, TOP = 72, 14, 46, 14
 ROW, PER_ROW, NAMED = 20, 3, 24
 LETTER, NOTE = 10.5, 19
-"""Width of a letter, about, and height of a line. On a phone letters are 19 high, which is 11 pixels in a drawing that is
-as wide as the page; on larger screens 12 high in the same places."""
+"""Width of a letter, about, and height of a line. On a phone letters are 19 high, which is 11 pixels in a drawing as
+wide as the page; on larger screens 12 high in the same places."""
 _MARKERS = (
     "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z",
     "M-3.2-3.2h6.4v6.4h-6.4z",

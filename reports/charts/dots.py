@@ -16,7 +16,7 @@ from reports.charts.styles import SHAPES, Mark
 LANE, MARK = 8, 0.95
 """Height of the line that one method's marks stand on [px], and size of a mark against that of line charts."""
 ROOM = 3.1
-"""Room of a letter in the labels of ticks [%], about 7 px where an axis is 220 px long; narrow screens show every other."""
+"""Room of a letter in the labels of ticks [%], 7 px where an axis is 220 px long; narrow screens show every other."""
 REFERENCE = Mark("", "|", "solid")
 
 

@@ -16,7 +16,8 @@ WORDS = """() => {
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   let words = 0;
   while (texts.nextNode()) {
-    if (texts.currentNode.parentElement.checkVisibility()) words += texts.currentNode.data.trim().split(/\\s+/).filter(Boolean).length;
+    const text = texts.currentNode;
+    if (text.parentElement.checkVisibility()) words += text.data.split(/\\s+/).filter(Boolean).length;
   }
   return words;
 }"""
