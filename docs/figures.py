@@ -185,6 +185,27 @@ def friction_figure(folder: Path) -> None:
         axes.legend(frameon=False)
 
 
+def load_steps_figure(folder: Path) -> None:
+    """The load steps of the paper's wall by distinct elements, in the order of the search."""
+    import drystone
+    from harness.model.details import AnswerDetails
+
+    answer = drystone.analyse(drystone.library_wall("wall-21"), "de")
+    loads, order = np.array(answer.path["multiplier"]), AnswerDetails(answer.details).reported_order
+    number, held, moves = np.arange(1, len(loads) + 1), loads <= order.held, loads >= order.moving
+    with _drawing(folder / "load-steps.svg", 6.0, 3.2) as (axes,):
+        for name, shown, colour, marker in (
+            ("held", held, BLUE, "o"),
+            ("undecided", ~held & ~moves, GREY, "x"),
+            ("moves", moves, RUST, "s"),
+        ):
+            if shown.any():
+                axes.plot(number[shown], loads[shown], marker, color=colour, label=name, markersize=4)
+        axes.set_xlabel("load step")
+        axes.set_ylabel("multiplier")
+        axes.legend(frameon=False)
+
+
 def readme_figures(folder: Path) -> None:
     """What the README shows: mechanisms of the 21-brick wall, that of its minimum, and the first screen of the report.
 
@@ -225,7 +246,7 @@ def first_screen(browser: Browser) -> tuple[str, bytes]:
     return words, picture
 
 
-ALL = (signs_figure, laws_figure, block_figure, friction_figure)
+ALL = (signs_figure, laws_figure, block_figure, friction_figure, load_steps_figure)
 """Every figure."""
 
 if __name__ == "__main__":

@@ -15,10 +15,11 @@ from reports.charts.styles import Mark
 from reports.labels import numbers
 
 WIDTH, HEIGHT = 560, 330
-LEFT, RIGHT, BOTTOM, TOP = 62, 14, 46, 14
-ROW, PER_ROW = 18, 3
-LETTER, NOTE = 6.6, 12
-"""Width of a letter of a legend, about, and height of a line of notes."""
+LEFT, RIGHT, BOTTOM, TOP = 72, 14, 46, 14
+ROW, PER_ROW, NAMED = 20, 3, 24
+LETTER, NOTE = 10.5, 19
+"""Width of a letter, about, and height of a line. On a phone letters are 19 high, which is 11 pixels in a drawing as
+wide as the page; on larger screens 12 high in the same places."""
 _MARKERS = (
     "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z",
     "M-3.2-3.2h6.4v6.4h-6.4z",
@@ -228,7 +229,8 @@ class Plot:
     def of(cls, chart: Chart) -> Plot:
         """The plot of a chart, as wide as its values."""
         rows = math.ceil(len(chart.series) / chart.per_row) if len(chart.series) > 1 else 0
-        top, height = TOP + rows * ROW, HEIGHT + rows * ROW
+        above = rows * ROW + NAMED
+        top, height = TOP + above, HEIGHT + above
         xs = [value for series in chart.series for value in series.x]
         ys = [value for series in chart.series for value in [*series.y, *series.low, *series.high]]
         ys += [value for _, value in chart.levels]
@@ -296,10 +298,7 @@ def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Ma
     texts += Markup('<text x="{:.0f}" y="{}" class="mid axis">{}</text>').format(
         (LEFT + WIDTH - RIGHT) / 2, height - 8, chart.x_label
     )
-    middle = (top + base) / 2
-    texts += Markup('<text transform="translate(14 {:.0f}) rotate(-90)" class="mid axis">{}</text>').format(
-        middle, chart.y_label
-    )
+    texts += Markup('<text x="4" y="{}" class="axis">{}</text>').format(top - 12, chart.y_label)
     frame = f"M{LEFT} {top}V{base}H{WIDTH - RIGHT}"
     return Markup('<path class="grid" d="{}"/><path class="frame" d="{}"/>').format(grid, frame) + texts
 

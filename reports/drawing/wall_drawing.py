@@ -88,19 +88,25 @@ def _labels(frame: Frame, assembly: Assembly) -> list[Shape]:
     if assembly.n_blocks > _LABELLED_BLOCKS:
         return []
     short = all(len(name) <= 5 for name in assembly.block_ids)
+    names = assembly.block_ids if short else [str(k + 1) for k in range(assembly.n_blocks)]
+    sizes = [_letters(polygon * frame.scale, len(name)) for name, polygon in zip(names, assembly.polygons, strict=True)]
+    read = np.median(sizes) >= READ  # on the page most ids or none, not those of the few blocks that lie level
     drawn: list[Shape] = []
-    for k, (name, polygon) in enumerate(zip(assembly.block_ids, assembly.polygons, strict=True)):
-        label = name if short else str(k + 1)
-        height = float(np.ptp(polygon[:, 1])) * frame.scale
-        round_it = float(np.linalg.norm(polygon - np.roll(polygon, -1, axis=0), axis=1).sum())
-        slender = 2.0 * polygon_area(polygon) / round_it * frame.scale
-        size = min(170.0, 0.38 * height, 1.2 * slender / max(1.0, 0.55 * len(label)))
+    for k, (name, size) in enumerate(zip(names, sizes, strict=True)):
         if size >= 44.0:
             x, y = frame.place(assembly.centroid[k]).tolist()
             below = (0.35 if assembly.fixed[k] else -0.22) * size
-            role = "" if size >= READ else "fine"
-            drawn.append(Text(role, (x, y + below), label, size, title=f"block {name}"))
+            role = "" if read and size >= READ else "fine"
+            drawn.append(Text(role, (x, y + below), name, size, title=f"block {assembly.block_ids[k]}"))
     return drawn
+
+
+def _letters(polygon: FloatArray, letters: int) -> float:
+    """The size at which a text of so many letters fits into a block, (k, 2) in units of the drawing."""
+    height = float(np.ptp(polygon[:, 1]))
+    round_it = float(np.linalg.norm(polygon - np.roll(polygon, -1, axis=0), axis=1).sum())
+    slender = 2.0 * polygon_area(polygon) / round_it
+    return min(170.0, 0.38 * height, 1.2 * slender / max(1.0, 0.55 * letters))
 
 
 def load_arrows(frame: Frame, assembly: Assembly, head: float = 90.0) -> list[Shape]:

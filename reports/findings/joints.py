@@ -8,6 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.result import Result, normalised_mechanism, relative_velocities
+from reports.labels import numbers
 from reports.memo import memo
 
 STILL = 1e-5
@@ -92,7 +93,7 @@ def open_with_force(assembly: Assembly, result: Result) -> int:
 
 
 def joints_in_words(found: JointMotion) -> str:
-    """How many joints slide, rock and part, e.g. "3 joints slide, 9 rock, 2 do both"."""
+    """How many joints slide, rock and part, as "1 joint slides, 9 rock and 2 rock and slide"; nothing if none moves."""
     rocks = found.opens & ~found.parts & ~found.dilates
     both = int((rocks & found.slides).sum())
     counts = [
@@ -102,12 +103,9 @@ def joints_in_words(found: JointMotion) -> str:
         (both, "rock and slide"),
         (int(found.parts.sum()), "open along their whole length"),
     ]
-    told = [f"{number} {_OF_ONE[verb] if number == 1 else verb}" for number, verb in counts if number]
-    return (
-        ""
-        if not told
-        else "of the joints " + (told[0] if len(told) == 1 else ", ".join(told[:-1]) + " and " + told[-1])
-    )
+    moving = [(number, _OF_ONE[verb] if number == 1 else verb) for number, verb in counts if number]
+    told = [f"{numbers.count(number, 'joint') if k == 0 else number} {verb}" for k, (number, verb) in enumerate(moving)]
+    return " and ".join(filter(None, [", ".join(told[:-1]), *told[-1:]]))
 
 
 _OF_ONE = {

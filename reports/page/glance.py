@@ -200,8 +200,7 @@ def _joints(item: CaseResults, result: Result) -> str:
     found = motion(item.case.assembly, result)
     if found is None:
         return "Measured velocity field"
-    told = joints_in_words(found)
-    return f"{told[0].upper()}{told[1:]}" if told else "No joint moves"
+    return joints_in_words(found) or "No joint moves"
 
 
 def mechanisms_compared(item: CaseResults) -> str:

@@ -172,13 +172,19 @@ def _agreement(row: Mapping[Hashable, Any]) -> tuple[str, str]:
 
 
 def _cells(table: pd.DataFrame) -> tuple[list[str], list[list[str]], int]:
-    """Heads, rows and the number of rows left out of a table."""
+    """Heads, rows and the number of rows left out of a table; the least and the most of a value stand in one cell."""
     shown = table.head(MOST_ROWS)
-    return (
-        list(map(str, table.columns)),
-        [[_cell(value) for value in row] for row in shown.itertuples(index=False)],
-        (len(table) - len(shown)),
-    )
+    columns: dict[str, list[str]] = {}
+    for name in map(str, table.columns):
+        texts, value = [_cell(value) for value in shown[name]], name.removesuffix("_high")
+        if name.endswith("_low") and f"{name.removesuffix('_low')}_high" in table:
+            continue
+        if value != name and f"{value}_low" in table:
+            least = [_cell(value) for value in shown[f"{value}_low"]]
+            name = "mean of all" if value == "mean" else value
+            texts = [low if low == high else f"{low} to {high}" for low, high in zip(least, texts, strict=True)]
+        columns[name] = texts
+    return list(columns), [list(row) for row in zip(*columns.values(), strict=True)], len(table) - len(shown)
 
 
 def _cell(value: Any) -> str:

@@ -22,6 +22,7 @@
     };
     list.setAttribute("aria-live", "polite");
     figure.classList.add("stepped");
+    figure.tabIndex = 0;
     show(0);
     figure.addEventListener("keydown", (event) => {
       const to = { ArrowRight: shown + 1, ArrowLeft: shown - 1, Home: 0, End: items.length - 1 }[event.key];

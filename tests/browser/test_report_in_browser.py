@@ -230,7 +230,8 @@ def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
     assert width <= size["width"]
 
 
-@pytest.mark.parametrize(("size", "scheme"), [(PHONE, "light"), (DESKTOP, "dark")], ids=["phone", "desktop, dark"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [PHONE, TABLET, DESKTOP, WIDE], ids=["phone", "tablet", "desktop", "wide"])
 def test_no_serious_accessibility_fault(browser: Browser, report: Path, size: Any, scheme: Any):
     opened = Opened(browser, report, size)
     opened.page.emulate_media(color_scheme=scheme)

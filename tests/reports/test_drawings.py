@@ -28,7 +28,7 @@ from reports.drawing import figures
 from reports.drawing.animate import frames
 from reports.drawing.display_list import Frame
 from reports.drawing.force_drawing import force_drawing
-from reports.drawing.looks import COLOURS, LOOKS
+from reports.drawing.looks import COLOURS, LOOKS, css
 from reports.drawing.svg import inline
 from reports.drawing.wall_check_figure import inspected_figure
 from reports.drawing.wall_drawing import wall_drawing
@@ -308,3 +308,59 @@ def test_a_collapse_that_was_followed_stays_in_the_picture():
     edges = np.array(shaded(case, samples.solved(case, "de-tilt", 0.5, details={"release": {"frames": steps}})))
     moved = (edges - edges[0]) / np.ptp(edges[0])
     np.testing.assert_allclose(moved, 0.5 * np.arange(7)[:, None] * [1.0, 1.0], atol=0.05)
+
+
+def test_a_ring_encloses_the_arrow_of_a_force_at_the_limit_of_friction():
+    case = samples.block()
+    result = samples.solved(case, "la", 0.4)
+    friction = case.assembly.friction
+    result.forces = [(0.5, 0.5, mu) for mu in friction]
+    parts = forces_of(case, result)
+    rings = [np.ptp(part.points, axis=0)[0] for part in parts if part.role == "ring"]
+    widths = [float(part.element.get("stroke-width", "")) for part in parts if part.role == "thrust"]
+    assert len(rings) == len(widths) == len(friction)
+    assert all(width < ring < 3.0 * width for ring, width in zip(rings, widths, strict=True))
+
+
+@pytest.mark.parametrize("way", [(1.0, 0.0), (0.6, -0.8), (-1.0, 0.0)])
+def test_arrows_of_loads_point_as_the_loads_do_and_stay_shorter_than_blocks(way: tuple[float, float]):
+    data = running_bond(3, 2)
+    case = wall_case(data, loads={"live": {"body": [{"per_weight": list(way)}]}})
+    parts, frame = read(str(inline(wall_drawing(case))))[1], Frame.of(case.assembly)
+    shafts = [line for part in parts if part.role == "live shaft" for line in part.lines()]
+    assert len(shafts) == case.assembly.n_free
+    for line in shafts:
+        step = line[-1] - line[0]
+        assert step / np.linalg.norm(step) == pytest.approx((way[0], -way[1]), abs=0.02)
+        assert np.linalg.norm(step) < frame.block
+
+
+def test_the_scale_of_lengths_ends_in_upright_strokes():
+    parts = read(str(inline(wall_drawing(samples.bond()))))[1]
+    (scale,) = (part for part in parts if part.role == "scale")
+    bar, *ends = scale.lines()
+    assert np.ptp(bar[:, 1]) == 0.0
+    assert len(ends) == 2
+    for stroke, x in zip(ends, sorted(bar[:, 0]), strict=True):
+        assert stroke[:, 0].tolist() == [x, x]
+        assert stroke[:, 1].min() < bar[0, 1] < stroke[:, 1].max()
+
+
+def test_ids_are_shown_on_the_page_for_most_blocks_or_for_none_and_are_no_larger_than_a_head():
+    for case in (
+        samples.bond(),
+        samples.block(),
+        wall_case({"type": "ring", "inner_radius": 2.0, "outer_radius": 2.3, "count": 25}),
+    ):
+        labels = [part for part in read(str(inline(wall_drawing(case))))[1] if part.element.tag == "text"]
+        ids = [part for part in labels if part.element.findtext("title", "").startswith("block")]
+        shown = [part for part in ids if "fine" not in part.role]
+        assert not shown or 2 * len(shown) >= len(ids)
+        assert all(float(part.element.get("font-size", "")) <= 170.0 for part in ids)
+
+
+def test_a_page_draws_in_the_colours_of_its_style_sheet_and_a_file_in_its_own():
+    page, file = css(), css(1.0)
+    assert "svg .stone { fill: var(--paper); stroke: var(--ink);" in page
+    assert f"stroke: {COLOURS['ink']};" in file
+    assert "var(" not in file

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from reports.charts import charts, studies
+from reports.charts import charts, dots, studies
 from reports.page.study_page import StudyPage, render
 from tests.reports import samples
 from tests.reports.read_chart import Read
@@ -78,3 +79,46 @@ def test_bars_of_two_series_stand_beside_each_other_and_the_legend_shows_what_is
     legends = text.count('class="mark s0"'), text.count('class="mark s1"')
     assert legends == (3, 0)  # two points and their sample; none where there are brackets alone
     assert text.count('class="line s1"') == 0
+
+
+def test_a_legend_takes_nothing_from_the_height_of_the_plot():
+    one, many = (
+        charts.Plot.of(charts.Chart("t", "x", "y", [charts.Series(f"s{k}", [1.0, 2.0], [0.0, 1.0]) for k in range(n)]))
+        for n in (1, 7)
+    )
+    assert (one.rows, many.rows) == (0, 3)
+    assert many.height - many.top == one.height - one.top == pytest.approx(one.up.start - one.up.end + charts.BOTTOM)
+    assert many.height - one.height == 3 * charts.ROW
+
+
+def test_samples_of_a_legend_stand_between_the_names():
+    series = [charts.Series(name, [1.0], [math.nan], [0.5], [0.7], line=False) for name in ("first", "second")]
+    text = str(charts.svg(charts.Chart("t", "x", "y", series)))
+    samples_at = [float(x) for x in re.findall(r'd="M(\d+) [\d.]+v10"', text)]
+    names_at = [float(x) for x in re.findall(r'<text x="(\d+)" y="\d+">', text)]
+    assert len(samples_at) == len(names_at) == 2
+    assert samples_at[0] < names_at[0] < samples_at[1] < names_at[1]
+    assert all(10.0 < name - sample < 30.0 for sample, name in zip(samples_at, names_at, strict=True))
+
+
+def test_a_tick_at_the_rounded_end_of_an_axis_is_kept():
+    assert charts.ticks(0.1 + 0.2, 0.8)[0] == pytest.approx(0.3)
+    assert charts.ticks(0.2, 0.7 - 1e-16)[-1] == pytest.approx(0.7)
+
+
+def test_the_band_of_a_dot_plot_lies_between_its_values():
+    scale = dots.plain_scale([0.0, 1.0])
+    text = str(dots.html(dots.DotPlot("t", scale, [], band=(0.25, 0.75))))
+    found = re.search(r'class="within" x="([\d.]+)%" width="([\d.]+)%"', text)
+    assert found is not None
+    ends = [scale.place(0.25) or 0.0, scale.place(0.75) or 0.0]
+    assert float(found[1]) == pytest.approx(ends[0], abs=0.01)
+    assert float(found[1]) + float(found[2]) == pytest.approx(ends[1], abs=0.01)
+
+
+def test_labels_of_a_dot_plot_have_room_for_their_letters():
+    text = str(dots.html(dots.DotPlot("t", dots.plain_scale([0.59994, 0.60011]), [])))
+    shown = [(float(x), name) for x, name in re.findall(r'left:([\d.]+)%">([^<]+)<', text)]
+    assert len(shown) > 1
+    for (left, first), (right, second) in pairwise(shown):
+        assert 2.2 * (right - left) >= 6.5 * 0.5 * (len(first) + len(second)), "on an axis of 220 px"

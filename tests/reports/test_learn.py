@@ -9,10 +9,12 @@ import pytest
 
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.comparison import CaseResults
 from harness.model.method import load_method
 from harness.model.wall import Wall
 from reports.page.learn import BlockAnswers, block_answers, render
 from tests.reports import samples
+from tests.reports.read_chart import Read
 
 
 def block(rear: float, front: float) -> Assembly:
@@ -54,3 +56,15 @@ def test_page_works_offline_and_its_drawings_stand_without_a_script():
     assert "0.4762" in body
     assert "0.5455" in body
     assert body.count('class="wall"') >= 1
+
+
+def test_the_chart_over_friction_shows_each_answer_of_the_walls():
+    run = samples.typical()
+    block = next(item for item in run.cases if item.case.id == "single-block")
+    known = {0.4: 0.41, 0.6: 0.52, 0.8: 0.55}
+    walls = []
+    for friction, value in known.items():
+        case = samples.bond(f"wall-{len(walls)}", friction=friction)
+        walls.append(CaseResults(case, [samples.solved(case, "la", value)]))
+    text = render(replace(run, cases=[block, *walls]))
+    assert Read(text).marks == [pytest.approx(point, abs=0.01) for point in known.items()]

@@ -161,6 +161,10 @@ def test_friction_takes_all_work_of_a_block_that_slides_on_level_ground():
     normal = 0.5 / assembly.n_interfaces
     result.forces = [(normal / 2, normal / 2, 0.4 * normal)] * assembly.n_interfaces
     assert reasons.friction_share(assembly, result) == pytest.approx(1.0, rel=1e-12)
+    half = samples.solved(case, "fe", 0.41)
+    half.mechanism, half.forces = result.mechanism, [(a, b, 0.5 * shear) for a, b, shear in result.forces]
+    told = " ".join(reasons.reasons(CaseResults(case, [result, half])))
+    assert "Friction takes 100 % of the live load’s work in la and 49 % in fe." in told
 
 
 def test_reason_names_what_moves_in_one_only():
@@ -240,7 +244,7 @@ def test_methods_run_on_few_cases_take_no_column():
 def test_joints_are_told_by_what_they_do_and_forces_by_the_state_they_are_of():
     item = of_one_wall()
     page = build.render(ComparisonRun("mine", "", "", [item]), data_folder="x")
-    assert "of the joints" in page
+    assert "mechanism without dilatancy; 7 joints slide, 2 rock and slide and 2 open along their whole length" in page
     assert page.count("contact forces of the last held state; the mechanism above belongs to the moving state") == 1
     assert page.count("contact forces at collapse") == 3
     assert "No result of this comparison has a value of others" in page
@@ -250,8 +254,12 @@ def test_joint_that_rocks_and_slides_counts_as_both():
     slides, opens = np.array([True, True, False, False]), np.array([False, True, True, True])
     moves = joints.JointMotion(slides, opens, np.array([False, False, False, True]), np.zeros(4, dtype=bool))
     assert joints.joints_in_words(moves) == (
-        "of the joints 1 slides, 1 rocks, 1 rocks and slides and 1 opens along its whole length"
+        "1 joint slides, 1 rocks, 1 rocks and slides and 1 opens along its whole length"
     )
+    opened = joints.JointMotion(slides[1:], opens[1:], np.array([False, True, True]), np.zeros(3, dtype=bool))
+    assert joints.joints_in_words(opened) == "1 joint rocks and slides and 2 open along their whole length"
+    still = joints.JointMotion(*(np.zeros(2, dtype=bool) for _ in range(4)))
+    assert joints.joints_in_words(still) == ""
 
 
 def test_long_table_in_which_all_agree_is_folded_with_its_count():

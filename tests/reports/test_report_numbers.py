@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -236,6 +237,7 @@ def test_walls_that_differ_in_friction_make_a_study():
     )
     (study,) = families.families(run)
     assert "3 values of friction" in study.sentence
+    assert [caption for caption, _ in study.charts] == [""], "a chart alone is named by its head"
     assert "0.4 and 0.65" in study.sentence, "the mechanism of the one with friction 0.4 is another"
 
 
@@ -343,7 +345,13 @@ def test_grid_names_who_stands_apart_and_how_far():
 def test_grid_says_where_the_least_known_falls_as_friction_grows():
     values = {(length, mu): (0.6, 0.6, 0.6) for length in (0.4, 0.6) for mu in (0.6, 0.8)}
     values[0.4, 0.8] = (0.6, 0.55, 0.6)
-    assert "falls at" in grid_of(values).sentence
+    found = grid_of(values)
+    assert "it falls at 2:1 from 0.60000 at 0.6 to 0.55000 at 0.8." in found.sentence
+    assert found.table is not None
+    assert re.findall(r'<td class="([^"]+)"', found.table) == ["agree", "differ-2", "agree", "agree"]
+    thirds = {(length, mu): (0.6, 0.6, 0.6) for length in (0.4, 0.4472) for mu in (0.6, 0.8)}
+    thirds[0.4472, 0.8] = (0.6, 0.55, 0.6)
+    assert "falls at 2.24:1 from" in grid_of(thirds).sentence
     values[0.4, 0.8] = (0.6, 0.65, 0.6)
     assert "falls at" not in grid_of(values).sentence
 

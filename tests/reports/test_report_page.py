@@ -124,6 +124,21 @@ def test_references_stand_in_tables_by_what_a_disagreement_would_mean(page: Page
     assert heads[0] < page.text.index("requirement of bound") < heads[1], "a bound is verification"
 
 
+def test_runs_are_counted_by_the_machine_that_made_them(source: str):
+    assert "<dt>12 runs on</dt>" in source
+
+
+def test_a_setting_that_a_reference_asks_for_is_told_beside_the_cost():
+    asked = samples.reference("first", "exact", 0.5652, ["la"], settings={"starts": 4})
+    case = samples.bond(references=[asked])
+    item = CaseResults(case, [samples.solved(case, name, 0.5652) for name in ("fe", "la", "de")])
+    told = re.findall(
+        r'<td class="num">2</td><td>([^<]+)</td></tr>',
+        build.render(ComparisonRun("a", "", "", [item]), data_folder="x"),
+    )
+    assert told == ["none", "starts", "none"]
+
+
 def test_paper_values_stand_beside_ours(page: Page):
     assert "0.476 0.5/1.05 0.47619 0" in page.text
     assert "0.545 0.6/1.1 0.54545 0" in page.text

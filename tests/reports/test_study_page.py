@@ -169,3 +169,18 @@ def test_lines_are_named_by_what_tells_them_apart():
     assert legend(one, other) == ["fe", "la"]
     assert legend(one, one.assign(case="b")) == ["a", "b"]
     assert legend(one, other.assign(case="b")) == ["a, fe", "b, la"]
+
+
+def test_one_wall_has_a_multiplier_and_no_mean():
+    assert findings(tables_of(walls([0.4])), []) == ["fe: multiplier 0.40000."]
+
+
+def test_the_least_and_the_most_of_a_value_stand_in_one_cell():
+    rows = walls([0.3, 0.5])
+    tables = tables_of(rows)
+    tables["quantiles"] = tables["quantiles"].assign(mean=0.4, mean_low=0.35, mean_high=0.45, q05_low=0.3, q05_high=0.3)
+    text = page_of(rows, tables).split("<h2>Quantiles</h2>")[1].split("</table>")[0]
+    heads = re.findall(r'<th scope="col">([^<]+)</th>', text)
+    cells = dict(zip(heads, re.findall(r"<td>([^<]*)</td>", text), strict=True))
+    assert (cells["mean"], cells["mean of all"], cells["q05"]) == ("0.4", "0.35 to 0.45", "0.3")
+    assert len(heads) <= 14, "as wide as the page at 1280 px"

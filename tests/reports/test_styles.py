@@ -62,3 +62,16 @@ def test_every_marker_is_another_figure():
     for (name, one), (other, two) in itertools.combinations(figures.items(), 2):
         apart = one.symmetric_difference(two).area / one.union(two).area
         assert apart > 0.1, f"{name} and {other} cannot be told apart"
+
+
+def test_markers_are_alike_in_size_and_point_where_their_names_say():
+    for name, path in styles.SHAPES.items():
+        if name != "o":
+            assert 3.0 <= abs(points_of(path)).max() <= 4.9, name
+    for name, way in {"^": (0, -1), "v": (0, 1), "<": (-1, 0), ">": (1, 0)}.items():
+        corners = points_of(styles.SHAPES[name])
+        along = corners @ way
+        assert along.max() == max(abs(corners).max(axis=0)) > -along.min(), name
+    narrow = points_of(styles.SHAPES["d"])
+    assert len(narrow) == 4
+    assert abs(narrow[:, 0]).max() < abs(narrow[:, 1]).max()
