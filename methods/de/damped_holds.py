@@ -11,6 +11,7 @@ from harness.model.deadline import STOPPED, best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.de.answers import solve_by_holds
 from methods.de.crushing import held_by_strips
+from methods.de.engines.box2d_joints import Box2dJoints, load_box2d
 from methods.de.engines.engine import Engine, motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
@@ -18,8 +19,8 @@ from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.strips import CannotModel
 from methods.de.holds.release import release
-from methods.de.methods import DE, DE_MUJOCO
-from methods.de.settings import MujocoSettings, ReleaseSettings, SweepSettings
+from methods.de.methods import DE, DE_BOX2D, DE_MUJOCO
+from methods.de.settings import Box2dSettings, MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
 from methods.numerics.residual_strength import plastic_and_residual
 from methods.springs.warm_up import block_on_halves
@@ -88,6 +89,28 @@ class MujocoHolds(Solver):
             return Answer(Status.REFUSED, Finding.NONE, str(error))
         except SolverFailed as error:
             return Answer(Status.NOT_CONVERGED, Finding.NONE, str(error))
+
+
+class Box2dHolds(Solver):
+    """The holds, the bracket and the orders of `de` on Box2D, so that an answer does not hang on one engine."""
+
+    def solve(self, assembly: Assembly, settings: Box2dSettings) -> Answer:
+        """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`.
+
+        Raises:
+            InputError: pyb2d3 is not installed.
+        """
+        load_box2d()
+        return analysed(assembly, lambda part: self._of_component(part, settings))
+
+    def _of_component(self, assembly: Assembly, settings: Box2dSettings) -> Answer:
+        def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Box2dJoints:
+            return Box2dJoints(assembly, blocks, joints, settings.iterations, tuning)
+
+        try:
+            return solve_by_holds(assembly, settings, engine, DE_BOX2D.tolerance)
+        except CannotModel as error:
+            return Answer(Status.REFUSED, Finding.NONE, str(error))
 
 
 class ReleasedCollapse(Solver):

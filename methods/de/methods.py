@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from harness.model.method import Listed, Traits
 from methods.de.settings import (
+    Box2dSettings,
     ClosedSettings,
     MujocoSettings,
     ReleaseSettings,
@@ -56,6 +57,24 @@ DE_MUJOCO = Listed(
     ),
 )
 """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
+
+DE_BOX2D = Listed(
+    name="de-box2d",
+    family="de",
+    title="distinct elements (Box2D, damped load steps)",
+    solver="methods.de.damped_holds:Box2dHolds",
+    Settings=Box2dSettings,
+    tolerance=1e-4,
+    traits=Traits(
+        caption="between held and moving, in Box2D",
+        brackets=True,
+        moves_no_lower=True,
+        colour="#2f6b3a",
+        marker="v",
+        line="dashed",
+    ),
+)
+"""The holds, the bracket and the orders of `de` on Box2D: a second engine in the plane, of other people."""
 
 DE_TILT = Listed(
     name="de-tilt",

@@ -97,6 +97,23 @@ class MujocoSettings(HoldSettings):
     work: int = Field(default=60_000_000, ge=1)
 
 
+class Box2dSettings(HoldSettings):
+    """Settings of the holds in Box2D, which computes in single precision.
+
+    Attributes:
+        iterations: sub-steps of a time step, with two sweeps over the contacts each.
+        held_residual: above what single precision leaves out of balance in walls of a hundred blocks.
+        moving_residual: above `held_residual`.
+        force_residual: what single precision leaves to be gained.
+        work: a moved wall is made again from the start, which counts.
+    """
+
+    iterations: int = Field(default=10, ge=1, le=1000)
+    held_residual: float = Field(default=5e-6, gt=0.0, lt=1.0)
+    moving_residual: float = Field(default=2e-5, gt=0.0, lt=1.0)
+    force_residual: float = Field(default=1e-6, gt=0.0, lt=1.0)
+
+
 class ReleaseSettings(SweepSettings):
     """Settings of the bracket and of the release that follows it.
 

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from harness.model.method import Listed, Traits
-from methods.peers.settings import DiscoptSettings, PounceSettings, ScipSettings
+from methods.peers.settings import (
+    BisectionSettings,
+    CraSettings,
+    DiscoptSettings,
+    OpenSeesSettings,
+    PounceSettings,
+    ScipSettings,
+)
 
 SCIP = Listed(
     name="scip",
@@ -58,3 +65,59 @@ POUNCE = Listed(
     ),
 )
 """The relaxed programme of limit analysis in all unknowns by POUNCE, a port of Ipopt (`pounce`)."""
+
+OPENSEES = Listed(
+    name="opensees",
+    family="peers",
+    title="OpenSees (zero-length contact, load control)",
+    solver="methods.peers.opensees:OpenSeesContacts",
+    Settings=OpenSeesSettings,
+    # Points that open within a load step keep the shear that they had: 2e-4 of the forces on a wall of 21 blocks.
+    tolerance=1e-3,
+    traits=Traits(
+        caption="last load that converged in OpenSees, no proof",
+        elastic=True,
+        colour="#555555",
+        marker="P",
+        line="dotted",
+    ),
+)
+"""Rigid blocks on zero-length contact elements of OpenSees, loaded until its path converges no more."""
+
+RBE = Listed(
+    name="rbe",
+    family="peers",
+    title="compas_cra, rigid-block equilibrium",
+    solver="methods.peers.cra:RigidBlockEquilibrium",
+    Settings=BisectionSettings,
+    # Ipopt ends within 1e-6 of the constraints, in mean dead loads of a block.
+    tolerance=1e-5,
+    traits=Traits(
+        caption="between an equilibrium without tension and none, compas_cra",
+        brackets=True,
+        any_self_stress=True,
+        colour="#555555",
+        marker="X",
+        line="dashed",
+    ),
+)
+"""Compas_cra, rigid-block equilibrium, the multiplier by bisection (`rbe`)."""
+
+CRA = Listed(
+    name="cra",
+    family="peers",
+    title="compas_cra, coupled rigid-block analysis",
+    solver="methods.peers.cra:CoupledRigidBlockAnalysis",
+    Settings=CraSettings,
+    # Ipopt ends within 1e-6 of the constraints, in mean dead loads of a block.
+    tolerance=1e-5,
+    traits=Traits(
+        caption="between a solution of CRA and none",
+        brackets=True,
+        any_self_stress=True,
+        colour="#555555",
+        marker="x",
+        line="dashed",
+    ),
+)
+"""Compas_cra, coupled rigid-block analysis, the multiplier by bisection (`cra`)."""

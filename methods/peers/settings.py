@@ -50,3 +50,49 @@ class PounceSettings(Settings):
     epsilons: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
     most_iterations: int = Field(default=500, ge=1)
     greatest_rate: float = Field(default=1e3, gt=0.0)
+
+
+class OpenSeesSettings(Settings):
+    """The joints, and how the load is raised.
+
+    Attributes:
+        stiffness: of the joints across, per length of joint, in mean dead loads of a block over the square of the
+            length scale; half of it at each end. Geometry stays as drawn, so that it decides the path alone.
+        shear_ratio: stiffness along the joints over stiffness across.
+        load_step: first load step, as a part of the dead load; it is halved where it does not converge.
+            Points that open within a step keep their shear, so that it is small.
+        least_step: load step at which the path ends.
+        load_cap: live load, as a multiple of the dead load, at which it is given up.
+    """
+
+    stiffness: float = Field(default=1e4, gt=0.0)
+    shear_ratio: float = Field(default=1.0, gt=0.0)
+    load_step: float = Field(default=0.001, gt=0.0, le=1.0)
+    least_step: float = Field(default=1e-7, gt=0.0, le=0.1)
+    load_cap: float = Field(default=100.0, gt=0.0)
+
+
+class BisectionSettings(Settings):
+    """How the multiplier is bisected.
+
+    Attributes:
+        load_step: first load step, as a part of the dead load; it doubles until there is no solution.
+        load_cap: live load, as a multiple of the dead load, at which the search is given up.
+        accuracy: the bracket is narrowed to this fraction of the multiplier.
+    """
+
+    load_step: float = Field(default=0.1, gt=0.0)
+    load_cap: float = Field(default=100.0, gt=0.0)
+    accuracy: float = Field(default=5e-4, gt=0.0, le=0.1)
+
+
+class CraSettings(BisectionSettings):
+    """How the multiplier is bisected, and the bounds of CRA on the motion of joints.
+
+    Attributes:
+        motion: most that joints move, in length scales: `d_bnd` of compas_cra, whose default it is.
+        overlap: of contacts that press, in length scales: its `eps`.
+    """
+
+    motion: float = Field(default=1e-3, gt=0.0)
+    overlap: float = Field(default=1e-4, gt=0.0)

@@ -13,7 +13,12 @@ from tests.walls import assembly, stack
 
 @pytest.mark.parametrize(
     ("method", "package", "extra"),
-    [("la-paper", "ipyopt", "paper"), ("la-associated-cvxpy", "cvxpy", "cvxpy"), ("de-mujoco", "mujoco", "mujoco")],
+    [
+        ("la-paper", "ipyopt", "paper"),
+        ("la-associated-cvxpy", "cvxpy", "cvxpy"),
+        ("de-mujoco", "mujoco", "mujoco"),
+        ("de-box2d", "pyb2d3", "box2d"),
+    ],
 )
 def test_a_missing_package_is_told_with_the_extra_that_brings_it(
     method: str, package: str, extra: str, monkeypatch: pytest.MonkeyPatch

@@ -1,0 +1,228 @@
+"""`rbe` and `cra`: rigid-block equilibrium and coupled rigid-block analysis of compas_cra, by bisection.
+
+compas_cra asks whether blocks under their weight have a solution. Here its problem is built from the wall's own joints,
+each a rectangle through a wall one length scale thick, and its loads are exchanged for dead + multiplier x live, all in
+the plane; the multiplier is bisected between one with a solution and one without.
+
+RBE: equilibrium of compression and friction; the tension that its program allows at a price is taken away. That asks
+for the associated maximum. CRA: besides, the blocks must be able to move so little that contacts that press close and
+friction opposes slip, within bounds on that motion which belong to the method. Ipopt's "no solution" is no proof.
+Source: G. T.-C. Kao, A. Iannuzzo, B. Thomaszewski, S. Coros, T. Van Mele, P. Block, Coupled rigid-block analysis,
+Computer-Aided Design 146, 2022, equations 6 and 11.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from typing import Any
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.deadline import Deadline, best_so_far
+from harness.model.method import Answer, Finding, Solver, Status
+from methods.numerics.claims import analysed
+from methods.numerics.optional import optional
+from methods.peers.settings import BisectionSettings, CraSettings
+
+
+def load_cra(method: str) -> Any:
+    """The module of compas_cra that states and solves its problems.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    return optional("compas_cra.equilibrium.cra_native", "cra", method)
+
+
+class Solvable:
+    """The problem of compas_cra for a wall, solved at one multiplier after another.
+
+    Args:
+        assembly: the wall, with one friction coefficient.
+        settings: those of `cra`; of `rbe` alone for RBE.
+        method: name of it, for messages.
+    """
+
+    def __init__(self, assembly: Assembly, settings: BisectionSettings, method: str) -> None:
+        self._native = native = load_cra(method)
+        self.assembly = assembly
+        self._length, self._force = assembly.length_scale, assembly.force_scale / assembly.n_free
+        self._wall = self._extruded()
+        self._coupled = isinstance(settings, CraSettings)
+        friction = float(assembly.friction[0])
+        with contextlib.redirect_stdout(io.StringIO()):
+            if isinstance(settings, CraSettings):
+                bounds = {"d_bnd": settings.motion, "eps": settings.overlap}
+                self._problem, layout = native.cra_problem(self._wall, mu=friction, **bounds)
+            else:
+                self._problem, layout = native.rbe_problem(self._wall, mu=friction)
+                self._problem.x_u[layout["f"]][1::4] = 0.0
+        self._forces_at = layout["f"]
+        self._options = native._CRA_OPTIONS if self._coupled else None
+        self.forces: FloatArray | None = None
+        self.said: list[str] = []
+
+    def _extruded(self) -> Any:
+        """The wall as blocks one length scale thick; x, y of the wall are x, z of it."""
+        wall = self.assembly
+        structures = optional("compas_cra.datastructures", "cra", "cra")
+        block = optional("compas_assembly.datastructures", "cra", "cra").Block
+        frame = optional("compas.geometry", "cra", "cra").Frame
+        result = structures.CRA_Assembly()
+        for i, polygon in enumerate(wall.polygons):
+            corners = (polygon - wall.middle) / self._length
+            k = len(corners)
+            vertices = [[float(x), side, float(y)] for side in (-0.5, 0.5) for x, y in corners]
+            sides = [[j, k + j, k + (j + 1) % k, (j + 1) % k] for j in range(k)]
+            faces = [list(range(k)), list(range(2 * k - 1, k - 1, -1)), *sides]
+            result.add_block(block.from_vertices_and_faces(vertices, faces), node=i)
+            result.graph.node_attribute(i, "is_support", bool(wall.fixed[i]))
+        self._joints_of: dict[tuple[int, int], list[int]] = {}
+        for p in range(wall.n_interfaces):
+            one, two = sorted((int(wall.block_a[p]), int(wall.block_b[p])))
+            (x1, y1), (x2, y2) = (((end[p] - wall.middle) / self._length).tolist() for end in (wall.end1, wall.end2))
+            points = [[x1, -0.5, y1], [x2, -0.5, y2], [x2, 0.5, y2], [x1, 0.5, y1]]
+            across, (tx, ty) = wall.normal[p] * self._way(p), wall.tangent[p].tolist()
+            side = float(np.sign(tx * across[1] - ty * across[0]))
+            plane = frame([0.5 * (x1 + x2), 0.0, 0.5 * (y1 + y2)], [tx, 0.0, ty], [0.0, side, 0.0])
+            result.add_to_interfaces(one, two, float(wall.length[p] / self._length), points, plane)
+            self._joints_of.setdefault((one, two), []).append(p)
+        return result
+
+    def _way(self, p: int) -> float:
+        """1 if block a of an interface comes first in compas_cra, else -1."""
+        return 1.0 if self.assembly.block_a[p] < self.assembly.block_b[p] else -1.0
+
+    def _loads(self, multiplier: float) -> FloatArray:
+        """(6 n_free,) forces and moments about the points that compas_cra calls the centres of the blocks."""
+        wall = self.assembly
+        total = wall.dead + multiplier * wall.live
+        loads = np.zeros((wall.n_free, 6))
+        for k, i in enumerate(wall.free.tolist()):
+            x, _, y = self._wall.graph.node_attribute(i, "block").center()
+            arm = (wall.centroid[i] - wall.middle) / self._length - np.array([x, y])
+            fx, fy, moment = total[i] / np.array([self._force, self._force, self._force * self._length])
+            loads[k] = fx, 0.0, fy, 0.0, -(moment + arm[0] * fy - arm[1] * fx), 0.0
+        return loads.ravel()
+
+    def at(self, multiplier: float) -> bool:
+        """Whether there is a solution; its forces are kept then."""
+        Deadline.of_run().ask()
+        loads = self._loads(multiplier)
+        self._problem.g_l[: len(loads)] = self._problem.g_u[: len(loads)] = -loads
+        result = self._native.solve_nlp(self._problem, backend="native", options=self._options)
+        self.said.append(f"{multiplier:.6g}: {result.status_message}")
+        if result.success:
+            self.forces = self._contact_forces(np.asarray(result.x)[self._forces_at])
+        return bool(result.success)
+
+    def _contact_forces(self, found: FloatArray) -> FloatArray:
+        """(m, 3) contact forces (n1, n2, s) [force] from those of four corners a joint."""
+        forces = np.zeros((self.assembly.n_interfaces, 3))
+        corners = found.reshape(-1, 4, 3 if self._coupled else 4)
+        order = [p for edge in self._wall.graph.edges() for p in self._joints_of[edge]]
+        for p, corner in zip(order, corners, strict=True):
+            forces[p] = (
+                corner[0, 0] + corner[3, 0],
+                corner[1, 0] + corner[2, 0],
+                self._way(p) * corner[:, -2].sum(),
+            )
+        return forces * self._force
+
+
+class Bisection(Solver):
+    """The multiplier between one at which compas_cra finds a solution and one at which it does not.
+
+    Args:
+        method: name of it, for messages.
+        what: it asks, in words.
+
+    Attributes:
+        package: that it needs.
+    """
+
+    package = "compas_cra"
+
+    def __init__(self, method: str, what: str) -> None:
+        self._method, self._what = method, what
+
+    def solve(self, assembly: Assembly, settings: BisectionSettings) -> Answer:
+        """The bracket [solved, not solved] with the forces of its lower end.
+
+        Raises:
+            InputError: compas_cra is not installed.
+        """
+        load_cra(self._method)
+        return analysed(assembly, lambda part: self._of_component(part, settings))
+
+    def _of_component(self, assembly: Assembly, settings: BisectionSettings) -> Answer:
+        if assembly.n_free == 0:
+            return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
+        low, high = float(assembly.friction.min()), float(assembly.friction.max())
+        if low != high:
+            sentence = f"compas_cra takes one friction coefficient for all joints; the wall has {low:g} to {high:g}"
+            return Answer(Status.REFUSED, Finding.NONE, sentence)
+        problem = Solvable(assembly, settings, self._method)
+        solved, unsolved = list[float](), list[float]()
+
+        def bisected() -> bool:
+            unit = assembly.load_unit
+            if not problem.at(0.0):
+                return True
+            solved.append(0.0)
+            step = settings.load_step * unit
+            while assembly.has_live_load and solved[-1] < settings.load_cap * unit:
+                width = 0.5 * (unsolved[-1] - solved[-1]) if unsolved else step
+                if unsolved and 2.0 * width <= settings.accuracy * unsolved[-1]:
+                    break
+                step *= 2.0
+                middle = solved[-1] + width
+                (solved if problem.at(middle) else unsolved).append(middle)
+            return True
+
+        ended = best_so_far(bisected, lambda: False)
+        return self._concluded(problem, settings, max(solved, default=None), min(unsolved, default=None), ended)
+
+    def _concluded(
+        self, problem: Solvable, settings: BisectionSettings, solved: float | None, unsolved: float | None, ended: bool
+    ) -> Answer:
+        told = {"solved": problem.said}
+        if solved is None:
+            sentence = f"compas_cra found {self._what} under the dead load not, which does not show that the wall falls"
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=told)
+        if not problem.assembly.has_live_load:
+            sentence = f"compas_cra found {self._what} under the dead load; no live load is given"
+            answer = Answer(Status.OK, Finding.STANDS, sentence, details=told)
+        elif unsolved is None:
+            sentence = f"compas_cra found {self._what} up to multiplier {solved:.6g}; larger loads were not tried"
+            answer = Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=told)
+        else:
+            sentence = (
+                f"compas_cra found {self._what} at {solved:.6g} and not at {unsolved:.6g}; that it finds none is no "
+                "proof of collapse"
+            )
+            loose = unsolved - solved > settings.accuracy * unsolved
+            answer = Answer(Status.NOT_CONVERGED if loose else Status.OK, Finding.COLLAPSES, sentence, details=told)
+            answer.multiplier, answer.bracket = 0.5 * (solved + unsolved), (solved, unsolved)
+            answer.bracket_meaning = "[highest multiplier with a solution, lowest without]"
+        if not ended:
+            answer.details["stopped_by_limit"] = True
+        answer.forces, answer.forces_multiplier = problem.forces, solved
+        answer.iterations = len(problem.said)
+        return answer
+
+
+class RigidBlockEquilibrium(Bisection):
+    """Rigid-block equilibrium (`rbe`)."""
+
+    def __init__(self) -> None:
+        super().__init__("rbe", "an equilibrium without tension")
+
+
+class CoupledRigidBlockAnalysis(Bisection):
+    """Coupled rigid-block analysis (`cra`)."""
+
+    def __init__(self) -> None:
+        super().__init__("cra", "coupled forces and motions")
