@@ -38,6 +38,8 @@ def _ready(name: str) -> Method | None:
 def _run(method: Method, wall: Wall) -> None:
     try:
         method.solve(wall.assembly, method.Settings())
+    except MissingPackage:
+        return
     except Exception as error:
         print(f"{method.name} cannot be prepared: {error}", file=sys.stderr)
 

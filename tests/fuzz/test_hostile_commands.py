@@ -37,8 +37,8 @@ READ = ("factor {}", "reaction {}", "bound {} -o o.json", "domain {}", "figure {
         "export {} -o o.csv", "compare {} --methods la", "run la {}", "judge {} long.json")  # fmt: skip
 ASKED = [
     *(each.format(name) for each in READ for name in ("product.json", "names.json", "nested.json")),
-    *("run de-soft tied.json", "run de-uneven tied.json", "run la crushed.json"),
-    "factor crushed.json",
+    *("run de-soft tied.json", "run de-uneven tied.json", "run la-bound crushed.json"),
+    "factor crushed.json --method fe-qp",
     "domain tied.json --method de-soft",
     "figure tied.json --methods de-soft -o o.pdf",
     "animate tied.json --method de-soft -o o.gif",
