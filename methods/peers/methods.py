@@ -24,7 +24,7 @@ SCIP = Listed(
         seeks_least=True,
         any_self_stress=True,
         colour="#555555",
-        marker="1",
+        marker="8",
         line="dashed",
     ),
 )
@@ -42,7 +42,7 @@ DISCOPT = Listed(
         seeks_least=True,
         any_self_stress=True,
         colour="#555555",
-        marker="2",
+        marker="8",
         line="dotted",
     ),
 )
@@ -60,7 +60,7 @@ POUNCE = Listed(
         seeks_least=True,
         any_self_stress=True,
         colour="#555555",
-        marker="3",
+        marker="8",
         line="dashdot",
     ),
 )
@@ -78,8 +78,8 @@ OPENSEES = Listed(
         caption="last load that converged in OpenSees, no proof",
         elastic=True,
         colour="#555555",
-        marker="P",
-        line="dotted",
+        marker="*",
+        line="dashed",
     ),
 )
 """Rigid blocks on zero-length contact elements of OpenSees, loaded until its path converges no more."""
@@ -97,7 +97,7 @@ RBE = Listed(
         brackets=True,
         any_self_stress=True,
         colour="#555555",
-        marker="X",
+        marker="+",
         line="dashed",
     ),
 )
@@ -116,8 +116,8 @@ CRA = Listed(
         brackets=True,
         any_self_stress=True,
         colour="#555555",
-        marker="x",
-        line="dashed",
+        marker="+",
+        line="dashdot",
     ),
 )
 """Compas_cra, coupled rigid-block analysis, the multiplier by bisection (`cra`)."""

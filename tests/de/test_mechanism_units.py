@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -14,7 +15,8 @@ from harness.model.wall import Wall
 from reports.findings.agreement import measure_of, velocity_cosine
 from tests.walls import assembly, running_bond, stack, wall_data
 
-MEASURED = ["de", "de-mujoco", "de-soft", "de-tilt"]
+MUJOCO = pytest.param("de-mujoco", marks=pytest.mark.skipif(not find_spec("mujoco"), reason="`.ci/extras` runs it"))
+MEASURED = ["de", MUJOCO, "de-soft", "de-tilt"]
 SIZES = ("width", "height", "block_length", "block_height")
 
 
@@ -84,7 +86,7 @@ def test_the_unit_of_length_changes_rotations_alone(method, pattern):
             assert judge(wall, off, solver.tolerance).accepted is False
 
 
-@pytest.mark.parametrize("method", ["de", "de-mujoco"])
+@pytest.mark.parametrize("method", ["de", MUJOCO])
 def test_a_fall_is_measured_with_its_forces(method):
     wall = assembly(stack(3) | {"offsets": [0.0, 0.0, 0.2]}, 0.7)
     result, judged = answered(prepared(load_method(method)), wall)
