@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,33 +16,21 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.result import Result, residual_of
 from methods.numerics.pressed_state import nearest_motion
 from methods.numerics.pressed_strips import pressed_shares, set_in
+from tests.pressed_walls import BOND, arch, found
 from tests.walls import assembly, stack
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
 ACCURACY = 5e-3
-
-
-def found(wall: Assembly) -> Result:
-    """The answer of `de`, which the judge accepts."""
-    result, judgement = answered(load_method("de"), wall)
-    assert judgement.accepted, result.sentence + judgement.sentence
-    return result
-
-
-def arch(strength: float, **more: Any) -> Assembly:
-    ring = {"type": "ring", "inner_radius": 0.925, "outer_radius": 1.075, "count": 20}
-    return assembly(ring, 1e3, unit_weight=1.0, compressive_strength=strength, **more)
 
 
 @cache
 def of_weak_arch() -> tuple[Assembly, Result]:
-    wall = arch(5.0)
-    return wall, found(wall)
+    wall = arch(0.15, 5.0)
+    return wall, found("de", wall)
 
 
 @pytest.mark.parametrize(("height", "value"), [(2.0, 0.16), (4.0, 0.06), (8.0, 0.01)])
 def test_pier_overturns_about_the_edge_of_its_pressed_strip(height: float, value: float):
-    result = found(assembly(stack(1, 0.4, height), 1.0, compressive_strength=200.0))
+    result = found("de", assembly(stack(1, 0.4, height), 1.0, compressive_strength=200.0))
     assert result.multiplier == pytest.approx(value, rel=ACCURACY)
     assert result.bracket is not None
     assert result.bracket[0] <= value * (1.0 + 1e-9)
@@ -51,7 +38,7 @@ def test_pier_overturns_about_the_edge_of_its_pressed_strip(height: float, value
 
 def test_tension_widens_the_pressed_strip():
     wall = assembly(stack(1, 0.4, 2.0), 1.0, cohesion=8.0, tensile_strength=4.0, compressive_strength=200.0)
-    result = found(wall)
+    result = found("de", wall)
     assert result.multiplier == pytest.approx(0.1725490, rel=ACCURACY)
     residual = residual_of(result)
     assert residual is not None
@@ -60,7 +47,7 @@ def test_tension_widens_the_pressed_strip():
 
 @pytest.mark.parametrize(("strength", "value"), [(100.0, 0.1434694), (20.0, 0.1184576)])
 def test_semicircle(strength: float, value: float):
-    assert found(arch(strength)).multiplier == pytest.approx(value, rel=ACCURACY)
+    assert found("de", arch(0.15, strength)).multiplier == pytest.approx(value, rel=ACCURACY)
 
 
 def test_semicircle_of_weak_joints():
@@ -69,12 +56,12 @@ def test_semicircle_of_weak_joints():
 
 def test_semicircle_falls_below_the_least_strength_and_stands_above():
     for live in ({"loads": {}}, {}):
-        assert found(arch(4.1, **live)).finding is Finding.FALLS
-    assert found(arch(4.4, loads={})).finding is Finding.STANDS
+        assert found("de", arch(0.15, 4.1, **live)).finding is Finding.FALLS
+    assert found("de", arch(0.15, 4.4, loads={})).finding is Finding.STANDS
 
 
 def test_wall_of_bricks_slides_and_crushes_where_fe_has_its_plateau():
-    result = found(assembly(BOND, 0.65, unit_weight=1.0, compressive_strength=100.0))
+    result = found("de", assembly(BOND, 0.65, unit_weight=1.0, compressive_strength=100.0))
     assert result.bracket is not None
     assert result.bracket[0] <= 0.5515217391 <= result.bracket[1]
     assert result.multiplier == pytest.approx(0.5515217391, rel=ACCURACY)
@@ -101,7 +88,7 @@ def test_wrong_answers_are_rejected(change: str):
     if change == "higher":
         changed = result.model_copy(update={"bracket": (result.bracket[1], 1.01 * result.bracket[1])})
     elif change == "weaker":
-        wall = arch(4.98)
+        wall = arch(0.15, 4.98)
         changed = result
     elif change == "no forces":  # ends close, with nothing that shows what they press
         details = {name: value for name, value in result.details.items() if name != MOVING_FORCES}

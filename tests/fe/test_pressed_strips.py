@@ -19,23 +19,10 @@ from methods.numerics.pressed_state import exact_state, moving_rows
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 from tests.cooked import KINDS, SLACK, TOLERANCE
 from tests.known_walls import Item
+from tests.pressed_walls import BOND, arch, found
 from tests.walls import assembly, running_bond, stack, wall_data
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
 TAKE = ("fe", "la")
-
-
-def found(name: str, wall: Assembly) -> Result:
-    """The answer of a method, which the judge accepts."""
-    result, judgement = answered(load_method(name), wall)
-    assert judgement.accepted, result.sentence + judgement.sentence
-    return result
-
-
-def arch(thickness: float, strength: float, friction: float = 1e3, **more: Any) -> Assembly:
-    """A semicircle of mean radius 1 of 20 voussoirs; by default they do not slide."""
-    ring = {"type": "ring", "inner_radius": 1.0 - thickness / 2, "outer_radius": 1.0 + thickness / 2, "count": 20}
-    return assembly(ring, friction, unit_weight=1.0, compressive_strength=strength, **more)
 
 
 @cache

@@ -16,35 +16,20 @@ import pytest
 from harness.engine.crushing import block_excess, block_power
 from harness.engine.judge import answered, judge
 from harness.engine.symmetry import VIEWS
-from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.method import Finding, load_method, method_names
-from harness.model.result import Result, residual_of
+from harness.model.result import residual_of
 from harness.model.wall import Wall
 from methods.numerics.stress_blocks import block_dissipation, greatest_by_chords
 from tests.commands import drystone
+from tests.pressed_walls import BOND, arch, found
 from tests.walls import assembly, running_bond, stack, wall_data
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
 HANGS = {"type": "panel", "cell_length": 1.0, "cell_height": 0.2, "layout": ["L", "B"], "fixed": "L"}
 TAKE = ("la-associated", "la-associated-cvxpy")
 GAP = 1e-6
 """Stated by both methods, and what the judge accepts between forces and mechanism."""
-
-
-def found(name: str, wall: Assembly, **settings: Any) -> Result:
-    """The answer of a method, which the judge accepts."""
-    result, judgement = answered(load_method(name), wall, **settings)
-    assert judgement.accepted, judgement.sentence
-    return result
-
-
-def arch(thickness: float, strength: float, live: bool = True) -> Assembly:
-    """A semicircle of mean radius 1 of 20 voussoirs that do not slide."""
-    ring = {"type": "ring", "inner_radius": 1.0 - thickness / 2, "outer_radius": 1.0 + thickness / 2, "count": 20}
-    loads = {} if live else {"loads": {}}
-    return assembly(ring, 1e3, unit_weight=1.0, compressive_strength=strength, **loads)
 
 
 @pytest.mark.parametrize("name", TAKE)
@@ -94,9 +79,9 @@ def test_semicircle(name: str, thickness: float, strength: float, value: float):
 @pytest.mark.parametrize(("thickness", "least"), [(0.15, 4.1981), (0.2, 2.6466)])
 def test_semicircle_falls_below_the_least_strength_and_stands_above(name: str, thickness: float, least: float):
     digit = 1e-4  # of the last one recorded
-    assert found(name, arch(thickness, least - digit, live=False)).finding is Finding.FALLS
+    assert found(name, arch(thickness, least - digit, loads={})).finding is Finding.FALLS
     assert found(name, arch(thickness, least - digit)).finding is Finding.FALLS
-    assert found(name, arch(thickness, least + digit, live=False)).finding is Finding.STANDS
+    assert found(name, arch(thickness, least + digit, loads={})).finding is Finding.STANDS
 
 
 def test_chords_and_cones_agree_on_random_walls():
@@ -191,7 +176,7 @@ def test_wrong_answers_are_rejected(change: str):
 
 
 def test_fall_by_a_mechanism_that_crushing_outweighs_is_no_fall():
-    wall, falls = arch(0.15, 4.3, live=False), found("la-associated", arch(0.15, 4.1, live=False))
+    wall, falls = arch(0.15, 4.3, loads={}), found("la-associated", arch(0.15, 4.1, loads={}))
     assert judge(wall, falls, 1e-9).accepted is False
 
 

@@ -1,0 +1,27 @@
+"""Walls whose joints crush, as the tests of several methods need them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from harness.engine.judge import answered
+from harness.model.assembly import Assembly
+from harness.model.method import load_method
+from harness.model.result import Result
+from tests.walls import assembly
+
+BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
+"""The 21 bricks, of length one."""
+
+
+def found(name: str, wall: Assembly, **settings: Any) -> Result:
+    """The answer of a method, which the judge accepts."""
+    result, judgement = answered(load_method(name), wall, **settings)
+    assert judgement.accepted, result.sentence + judgement.sentence
+    return result
+
+
+def arch(thickness: float, strength: float, friction: float = 1e3, **more: Any) -> Assembly:
+    """A semicircle of mean radius 1 of 20 voussoirs; by default they do not slide."""
+    ring = {"type": "ring", "inner_radius": 1.0 - thickness / 2, "outer_radius": 1.0 + thickness / 2, "count": 20}
+    return assembly(ring, friction, unit_weight=1.0, compressive_strength=strength, **more)
