@@ -15,7 +15,8 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.pressed_search import ends_at, is_lost, no_answer, not_found
+from methods.numerics.claims import no_answer
+from methods.numerics.pressed_search import ends_at, is_lost, not_found
 from methods.numerics.pressed_state import held_forces, nearest_motion
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 
@@ -44,7 +45,7 @@ def held_by_strips(
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
         answer = solve(set_in(assembly, share))
-        if is_lost(assembly, answer) and abs(share - stood).max() > 0.0:
+        if abs(share - stood).max() > 0.0 and is_lost(assembly, answer):
             share = 0.5 * (share + stood)  # pressed by forces of a load that is further from this one
             continue
         ends = ends_at(assembly, answer, share)

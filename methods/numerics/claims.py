@@ -205,6 +205,11 @@ def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
     if answer.mechanism is not None and -answer.multiplier <= least_told(assembly, answer.mechanism):
         return replace(answer, multiplier=0.0, forces_multiplier=0.0)
     sentence = "the run ended in a collapse state below zero, which the live load does not cause"
+    return no_answer(answer, sentence)
+
+
+def no_answer(answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence; its way and its details stay."""
     return replace(
         answer,
         status=Status.NOT_CONVERGED,

@@ -15,7 +15,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.claims import growing_forces
+from methods.numerics.claims import growing_forces, no_answer
 from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 from methods.numerics.stress_blocks import greatest_by_chords
@@ -77,7 +77,7 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
     for rounds in range(1, options.rounds + 1):
         wall = set_in(assembly, share)
         answer = solve(wall)
-        if is_lost(assembly, answer) and abs(share - stood).max() > 0.0:
+        if abs(share - stood).max() > 0.0 and is_lost(assembly, answer):
             share = 0.5 * (share + stood)  # pressed by forces of a state that is further from this one
             continue
         ends = ends_at(assembly, answer, share)
@@ -205,18 +205,3 @@ def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
     """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
     proof = falling_mechanism(assembly)
     return no_answer(answer, sentence) if proof is None else _falls(answer, proof)
-
-
-def no_answer(answer: Answer, sentence: str) -> Answer:
-    """The answer of a run that came to none, in a sentence; its way and its details stay."""
-    return replace(
-        answer,
-        status=Status.NOT_CONVERGED,
-        finding=Finding.NONE,
-        sentence=sentence,
-        multiplier=None,
-        bracket=None,
-        forces=None,
-        forces_multiplier=None,
-        mechanism=None,
-    )

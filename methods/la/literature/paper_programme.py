@@ -240,8 +240,8 @@ class _Programme:
         rates = unknowns[self._forces :]
         out[:] = np.concatenate(
             [
-                self.compatibility.tocoo().data,
-                self.slacks_of.tocoo().data,
+                self.compatibility.data,
+                self.slacks_of.data,
                 (self.slacks_of.T @ rates) / self.live_work,
                 self._slacks(unknowns) / self.live_work,
                 self.live_row[np.flatnonzero(self.live_row)],
@@ -255,7 +255,7 @@ class _Programme:
 
     def put_curvature(self, unknowns: FloatArray, weights: FloatArray, slope: float, out: FloatArray) -> None:
         """The second derivatives of the Lagrangian."""
-        out[:] = weights[-2] * self.slacks_of.tocoo().data / self.live_work
+        out[:] = weights[-2] * self.slacks_of.data / self.live_work
 
 
 def _joined(parts: Sequence[NDArray[np.integer[Any]]]) -> IntArray:
