@@ -35,6 +35,8 @@ BESIDE = 7.0
 ROUNDING = 1e-9
 """Relative difference of values that are one: an axis of such values is as wide as one of a single value."""
 _MOST_POINTS = 300
+SMALLEST = 1.0
+"""Least size of a mark: smaller ones cannot be told apart on a page."""
 
 
 @dataclass(frozen=True)
@@ -341,7 +343,7 @@ def _series(series: Series, number: int, across: Axis, up: Axis, aside: float) -
         if place is not None and bottom is not None and top is not None:
             drawn += Markup('<path {} d="M{:.1f} {:.1f}V{:.1f}"/>').format(bar, place, bottom, top)
     # Later series are smaller, so that points on one place show as rings.
-    size = max(0.7, 1.35 - 0.15 * number)
+    size = max(SMALLEST, 1.35 - 0.15 * number)
     if series.marks or len(points) == 1:
         for px, py, x, y in points:
             drawn += Markup(

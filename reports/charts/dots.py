@@ -198,14 +198,15 @@ def _row(plot: DotPlot, row: DotRow, lanes: dict[str, int], number: int) -> Mark
 
 
 def _labels(scale: Scale) -> list[tuple[float, str]]:
-    """Places and texts of ticks, those left out that have no room beside the one before."""
+    """Places and texts of ticks, those left out that have no room beside others; what the axis counts from has some."""
     kept: list[tuple[float, str]] = []
-    for value in scale.ticks:
-        place = scale.place(value)
-        text = scale.text(value)
-        if place is not None and (not kept or place - kept[-1][0] >= ROOM * (len(text) + len(kept[-1][1])) / 2.0):
+    for value in sorted(scale.ticks, key=lambda value: value != 0.0):
+        place, text = scale.place(value), scale.text(value)
+        if place is not None and all(
+            abs(place - other) >= ROOM * (len(text) + len(said)) / 2.0 for other, said in kept
+        ):
             kept.append((place, text))
-    return kept
+    return sorted(kept)
 
 
 def _grid_id(plot: DotPlot) -> str:

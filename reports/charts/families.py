@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from markupsafe import Markup
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, polygon_area
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.result import Result, Verdict
@@ -21,6 +21,8 @@ from reports.geometry import shapes
 from reports.labels import labels, numbers
 
 _SMALLEST_FAMILY = 3
+RECTANGLE = 1e-6
+"""Share of the rectangle round a block that may be missing from it: coordinates are rounded to micrometres."""
 
 Members = list[tuple[float, CaseResults]]
 """Cases of one family, each with its value of the parameter."""
@@ -185,7 +187,7 @@ def proportion_of(assembly: Assembly) -> float | None:
     for block in assembly.free:
         polygon = assembly.polygons[block]
         size = polygon.max(axis=0) - polygon.min(axis=0)
-        if len(polygon) != 4 or float(size.min()) <= 0.0:
+        if polygon_area(polygon) < (1.0 - RECTANGLE) * float(size.prod()):
             return None
         ratios.append(float(size[0] / size[1]))
     counts = Counter(round(ratio, 6) for ratio in ratios)

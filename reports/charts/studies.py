@@ -157,6 +157,7 @@ def performance_profile(run: ComparisonRun) -> StudyCurves | None:
     if len(series) < 2:
         return None
     unsolved = sum(not any(solved(result) for result in item.results) for item in run.cases)
+    left = f"; {numbers.count(unsolved, 'case')} no method solved" if unsolved else ""
     chart = charts.Chart(
         "Performance profile",
         "CPU time over that of the fastest method",
@@ -168,7 +169,7 @@ def performance_profile(run: ComparisonRun) -> StudyCurves | None:
     return StudyCurves(
         "Performance profile",
         f"How much of the {numbers.count(len(run.cases), 'case')} each method solved within a multiple of the "
-        f"fastest method's time; {numbers.count(unsolved, 'case')} no method solved.",
+        f"fastest method's time{left}.",
         "Higher: more cases solved. Further left: faster. A run that failed, was rejected by the judge or "
         "contradicts a reference is not solved, however fast it was; a case that no method solved counts for "
         "none. A method does not solve a case on which it was not run. The associated maximum is excluded, "

@@ -16,7 +16,8 @@ def plain(value: float, digits: int = 5) -> str:
         return "0"
     if not 1e-4 <= abs(value) < 10.0 ** max(digits, 6):
         return power(value, max(1, digits - 2))
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    exponent = int(f"{value:.{digits - 1}e}".split("e")[1])  # of the rounded value: 0.99996 is 1.000 in four digits
+    decimals = max(0, digits - 1 - exponent)
     text = f"{value:.{decimals}f}"
     return text.replace("-", "−")
 

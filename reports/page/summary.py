@@ -221,7 +221,8 @@ def which_number(item: CaseResults) -> str:
         return ""
     value = numbers.multiplier(least.multiplier)
     proof = proof_of(item, least)
-    known = f"{value} ({least.method}), {proof.label}: {proof.clause}."
+    under = f" in load case {item.case.load_case}" if item.case.load_case else ""
+    known = f"{value} ({least.method}){under}, {proof.label}: {proof.clause}."
     brittle = _without_strength(item)
     sentences = [f"{brittle} With its strength: {known}" if brittle else f"For safety use {known}"]
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]

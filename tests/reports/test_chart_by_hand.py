@@ -84,7 +84,7 @@ def test_names_stand_in_rows_of_three_at_most_with_a_sample_before_each():
     marks = [placed(e) for e in of_class(root, "mark") if len(placed(e)) == 2]
     assert marks == [[85.0, 12.0], [243.0, 12.0], [401.0, 12.0], [85.0, 32.0]]
     sizes = {placed(e)[2] for e in of_class(root, "mark") if len(placed(e)) == 3}
-    assert sizes == {1.35, 1.2, 1.05, 0.9}, "later ones smaller, so that points on one place show as rings"
+    assert sizes == {1.35, 1.2, 1.05, 1.0}, "later ones smaller, so that points on one place show as rings"
     long = [charts.Series("a name of 23 letters ...", [0.0, 1.0], [0.0, 1.0]) for _ in range(4)]
     root = drawn(charts.Chart("t", "x", "y", long))
     assert root.get("viewBox") == f"0 0 560 {330 + 4 * 20 + 24}", "294 units each: one beside the other has no room"

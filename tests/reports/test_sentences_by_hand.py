@@ -1,0 +1,428 @@
+"""Whole sentences and tables of the report against what they have to say of data made by hand."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from harness.model.case import Case
+from harness.model.comparison import CaseResults, ComparisonRun
+from reports.charts import curves, families, grid
+from reports.charts.grid import GridCell
+from reports.charts.study_findings import answer, findings
+from reports.findings import agreement, reasons
+from reports.geometry import shapes, thrust_lines
+from reports.labels import numbers
+from reports.labels.wall_summary import friction_text, wall_summary
+from reports.page import paper, tables
+from tests.reports import samples
+from tests.walls import case as wall_case
+from tests.walls import running_bond
+
+
+def cell(proportion: float, friction: float, fe: float, la: float, **more: Any) -> GridCell:
+    """A wall of a grid with a multiplier of FE and one of LA."""
+    kept: dict[str, Any] = {"associated": None, "above": None, "head_thrust": {}} | more
+    ranges = {"fe": (fe, fe), "la": (la, la)}
+    return GridCell(0, proportion, friction, ranges, {name: samples.TRAITS[name] for name in ranges}, **kept)
+
+
+def test_a_grid_is_told_in_its_own_figures():
+    """FE lies 8.26 % and 14.3 % above the middle of both; medians are of the two walls on which they differ."""
+    bound = {"above": "la-associated"}
+    cells = [
+        cell(2.0, 0.5, 0.5, 0.5, associated=0.8, head_thrust={"fe": 9.0, "la": 9.0, "la-associated": 9.0}, **bound),
+        cell(2.0, 0.8, 0.59, 0.5, associated=0.885, head_thrust={"fe": 0.1, "la": 0.2, "la-associated": 0.5}, **bound),
+        cell(3.0, 0.5, 0.65, 0.65),
+        cell(3.0, 0.8, 0.8, 0.6, associated=1.0, head_thrust={"fe": 0.3, "la": 0.4, "la-associated": 0.9}, **bound),
+    ]
+    assert grid._where(cells) == (
+        "They agree within 1 % on 2 of 4 walls. The least friction at which they differ is, by proportion, 2:1 at 0.8, "
+        "3:1 at 0.8."
+    )
+    assert list(grid._why(cells)) == [
+        "On 2 of the 2 walls where they differ, FE is highest, by up to 14 % from the middle one; its head joints "
+        "carry 0.2 of the wall's weight there in the median, with 0.3 in LA.",
+        "The least known multiplier is not monotone in friction: it falls at 3:1 from 0.65000 at 0.5 to 0.60000 at "
+        "0.8.",
+        "The associated maximum lies up to 50 % above FE where they differ: its forces press on the head joints with "
+        "0.7 of the wall's weight in the median, FE's with 0.2, LA's with 0.3.",
+    ]
+    assert [(each.text, each.shade, each.least) for each in cells] == [
+        ("agree", "agree", "LA 0.50000"),
+        ("FE high 8 %", "differ-2", "LA 0.50000"),
+        ("agree", "agree", "LA 0.65000"),
+        ("FE high 14 %", "differ-3", "LA 0.60000"),
+    ]
+    assert cells[1].hover == "fe 0.59000, la 0.50000, associated maximum 0.88500"
+    alone = [cells[0], cells[1]]
+    assert next(iter(grid._why(alone))) == (
+        "On the one wall where they differ, FE is highest, by 8 % from the middle one; its head joints carry 0.1 of "
+        "the wall's weight there, with 0.2 in LA."
+    )
+
+
+def test_walls_of_a_grid_on_which_an_answer_is_missing_or_a_bracket_open_are_counted_apart():
+    traits = {name: samples.TRAITS[name] for name in ("la", "de")}
+
+    def of(la: tuple[float, float] | None, de: tuple[float, float] | None) -> GridCell:
+        return GridCell(3, 2.0, 0.5, {"la": la, "de": de}, traits, None, None, {})
+
+    near, open_, lost, low = (
+        of((0.5, 0.5), (0.499, 0.501)),
+        of((0.5, 0.5), (0.45, 0.55)),
+        of((0.5, 0.5), None),
+        of((0.5, 0.5), (0.3, 0.4)),
+    )
+    assert [(each.text, each.shade) for each in (near, open_, lost, low)] == [
+        ("agree", "agree"),
+        ("DE open", "open"),
+        ("no DE", "lost"),
+        ("LA high 18 %", "differ-3"),  # the middle of .5 and .35 is .425
+    ]
+    assert open_.hover == "la 0.50000, de [0.45000, 0.55000]"
+    assert grid._where([near, near, open_, lost, low]) == (
+        "They agree within 1 % on 2 of 5 walls; on 1 a measured bracket does not decide; on 1 a method gave no answer. "
+        "The least friction at which they differ is, by proportion, 2:1 at 0.5."
+    )
+    assert (
+        grid._where([near, open_]) == "They agree within 1 % on 1 of 2 walls; on 1 a measured bracket does not decide."
+    )
+    wide = of((0.25, 0.75), (0.45, 0.55))
+    assert wide.text == "LA open", "the widest of all is what leaves it open"
+
+
+def block_that(multiplier: float, method: str, motion: tuple[float, float, float], shear: float) -> tuple[Case, Any]:
+    """The paper's block with a motion, and a shear in its rear joint, which bears all of its weight."""
+    case = samples.block()
+    field = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0), motion]
+    forces = [(0.25, 0.25, shear), (0.0, 0.0, 0.0)]
+    more = {"mechanism": field, "forces": forces, "states": None}
+    return case, samples.solved(case, method, multiplier).model_copy(update=more)
+
+
+def test_why_two_states_part_is_told_in_joints_cosine_and_the_work_of_friction():
+    """A slide, and a turn by -1 about the toe with |v|^2 = A (.0625 + .25) + J, A = .5, J = .5 * 1.25 / 12.
+
+    Their product is .25 A: the cosine is .387. The slide spends .1 of the .4 * .5 that the live load does.
+    """
+    case, slides = block_that(0.4, "la", (1.0, 0.0, 0.0), 0.1)
+    _, turns = block_that(0.44, "fe", (0.25, 0.5, -1.0), 0.1)
+    assert reasons.reasons(CaseResults(case, [slides, turns])) == [
+        "la and fe (+10.00 %): mechanisms differ (cosine 0.387): 2 joints slide in la only; 2 joints open in fe only. "
+        "Friction takes 50 % of the live load’s work in la and 0 % in fe."
+    ]
+    pair = agreement.agreement(case.assembly, slides, turns)
+    assert pair.cosine == pytest.approx(0.125 / math.sqrt(0.5 * (0.5 * 0.3125 + 0.5 * 1.25 / 12)))
+    assert pair.difference == pytest.approx(0.1)
+    _, same = block_that(0.44, "fe", (2.0, 0.0, 0.0), 0.11)
+    assert reasons.reasons(CaseResults(case, [slides, same])) == [
+        "la and fe (+10.00 %): the same mechanism, other forces. Friction takes 50 % of the live load’s work in la and "
+        "50 % in fe."
+    ]
+    still = turns.model_copy(update={"mechanism": [(0.0, 0.0, 0.0)] * 3, "forces": None})
+    assert reasons.reasons(CaseResults(case, [slides, still])) == [
+        "la and fe (+10.00 %): mechanisms differ: 2 joints slide in la only; 1 block moves in la only."
+    ]
+
+
+@pytest.mark.parametrize(
+    ("motion", "said"),
+    [
+        ((-3.25, -1.5, 1.0), "turning anticlockwise about (2.00, −3.00) m"),  # r = (-1.5, 3.25) from the centre
+        ((0.25, 0.5, -1.0), "turning clockwise about the toe at (1.00, 0) m"),
+        ((0.25, 0.53, -1.0), "turning clockwise about the toe at (1.03, 0) m"),  # .05 of .7071 is .0354
+        ((0.25, 0.54, -1.0), "turning clockwise about (1.04, 0) m"),
+        ((0.25, -0.5, 1.0), "turning anticlockwise about (1.00, 0.500) m"),
+        ((1.0, 0.0, 0.019), "sliding"),
+        ((1.0, 0.0, 0.021), "turning anticlockwise about (0.500, 47.9) m"),
+    ],
+)
+def test_how_one_block_moves_is_told_with_the_centre_of_its_rotation(motion: tuple[float, float, float], said: str):
+    assembly = samples.block().assembly
+    field = np.zeros((3, 3))
+    field[2] = motion
+    assert reasons.mechanism_in_words(assembly, field, "m") == f"1 of 1 block moves, {said}"
+    assert reasons.mechanism_in_words(assembly, 0.0 * field, "m") == "no block moves"
+
+
+def test_runs_references_and_statements_are_counted():
+    """Twelve runs: two ended without an answer, one of the rest is rejected; one of three statements is violated."""
+    run = samples.typical()
+    assert tables.findings(run) == (
+        "Of 12 runs on 3 cases, 10 ended with an answer; the judge accepted 9 and rejected 1. "
+        "Of 2 checked reference values, 2 are met. Of 3 statements of theory that could be tested, 2 hold."
+    )
+    first = run.cases[0].results[0]
+    first.judge = first.judge.model_copy(update={"accepted": None})
+    assert "accepted 8 and rejected 1, and 1 is not judged." in tables.findings(run)
+    second = run.cases[0].results[1]
+    second.judge = second.judge.model_copy(update={"accepted": None})
+    assert "accepted 7 and rejected 1, and 2 are not judged." in tables.findings(run)
+
+
+def test_the_papers_tables_stand_beside_ours_in_numbers():
+    found = paper.paper_comparison(samples.typical())
+    assert found is not None
+    assert found.experiment == (
+        "A wall that fails 20 % earlier than ours would fail at 0.452 (FE), 0.446 (LA), 0.451 to 0.453 (DE)."
+    )
+    assert (found.names, found.ratio_paper, found.ratio_ours) == ("FE : LA : DE", "20 : 15 : 360", "20 : 10 : 400")
+    assert found.ratio_to_value == "20 : 10 : 400", "the search had its value at its end, after .1 s"
+    assert [
+        (row.method, row.paper_ratio, row.ratio, row.cpu.text, row.settings, row.changed) for row in found.cost
+    ] == [
+        ("fe", "20.0", "20.0", "200 ms", 2, "none"),
+        ("la", "15.0", "10.0", "100 ms", 2, "none"),
+        ("de", "360", "400", "4 s", 2, "none"),
+    ]
+    assert [row.until_value for row in found.cost] == [None, 0.1, None]
+    assert [(row.ours.text, row.anchor) for row in found.block] == [
+        ("0.47619", "run-0-0"),
+        ("0.40000", "run-0-1"),
+        ("0.54545", "run-0-2"),
+        ("[0.41270, 0.54550]", "run-0-3"),
+    ]
+    assert [row.difference for row in found.block][:3] == ["0", "0", "0"] or all(
+        row.difference == "0" or "×10⁻¹" in row.difference or row.difference == "10⁻¹⁶" for row in found.block[:3]
+    )
+    assert (found.block_case, found.wall_case) == (0, 1)
+
+
+def table(rows: list[dict[str, Any]]) -> dict[str, pd.DataFrame]:
+    base = {"case": "a", "method": "fe", "answered": 1, "brackets": 0, "deviation": math.nan}
+    full = []
+    for row in rows:
+        mean = row.get("mean", math.nan)
+        ends = {"mean_low": mean, "mean_high": mean, "q05_low": mean, "q95_high": mean}
+        full.append(base | ends | row)
+    return {"quantiles": pd.DataFrame(full)}
+
+
+def test_multipliers_of_a_study_are_told_along_its_grid_or_by_their_scatter():
+    along = [{"friction": mu, "mean": mean} for mu, mean in ((0.4, 0.45), (0.6, 0.4), (0.8, 0.5))]
+    assert findings(table(along), ["friction"]) == [
+        "fe: multipliers from 0.40000 (friction 0.6) to 0.50000 (friction 0.8)."
+    ]
+    level = [{"friction": mu, "mean": 0.4} for mu in (0.4, 0.6)]
+    assert findings(table(level), ["friction"]) == ["fe: multipliers 0.40000 at all points of the grid."]
+    drawn = [{"friction": mu, "mean": mean, "answered": 5} for mu, mean in ((0.4, 0.45), (0.6, 0.4))]
+    assert findings(table(drawn), ["friction"])[0].startswith("fe: mean multipliers from 0.40000 (friction 0.6)")
+    scattered = {"mean": 0.45, "deviation": 0.05, "answered": 12, "brackets": 2, "q05_low": 0.4, "q95_high": 0.5}
+    assert findings(table([scattered]), []) == [
+        "fe: mean multiplier 0.450, standard deviation 0.050 over 10 walls; nine of ten lie between 0.400 and 0.500; "
+        "2 of 12 answers are wide brackets."
+    ]
+    wide = {"mean_low": 0.4, "mean_high": 0.5, "answered": 3, "brackets": 3}
+    assert findings(table([wide]), []) == ["fe: mean multiplier [0.40000, 0.50000]; 3 of 3 answers are wide brackets."]
+    assert findings(table([wide | {"answered": 2, "brackets": 2}]), [])[0].startswith("fe: mean multiplier")
+    assert findings(table([{"mean": 0.4}]), []) == ["fe: multiplier 0.40000."]
+    two = [{"mean": 0.4}, {"mean": 0.5, "case": "b"}, {"mean": 0.5, "case": "b", "method": "la", "answered": 0}]
+    assert findings(table(two), []) == ["fe on a: multiplier 0.40000.", "fe on b: multiplier 0.50000."]
+    many = [{"mean": 0.4, "method": f"m{k}"} for k in range(7)]
+    assert findings(table(many), []) == []
+    assert len(findings(table(many[:6]), [])) == 6
+
+
+def test_probabilities_and_influences_of_a_study_are_told():
+    failure = {
+        "case": ["a", "a"],
+        "method": ["fe", "la"],
+        "multiplier": [0.4, 0.4],
+        "probability": [0.25, 0.5],
+        "probability_at_most": [0.25, 0.75],
+        "walls": [8, 8],
+        "low": [0.07, 0.2],
+        "high": [0.59, 0.9],
+    }
+    matters = {
+        "case": ["a"] * 3,
+        "method": ["fe"] * 3,
+        "quantity": ["friction", "size", "load"],
+        "delta": [0.2, 0.61, 0.1],
+        "delta_confidence": [0.1, 0.1, 0.1],
+        "walls": [50] * 3,
+    }
+    found = table([{"mean": 0.4, "method": f"m{k}"} for k in range(7)])
+    found |= {"failure": pd.DataFrame(failure), "sensitivity": pd.DataFrame(matters)}
+    assert findings(found, []) == [
+        "At multiplier 0.4 (fe), 25 % of 8 walls have collapsed; 95 % interval 7 to 59 %.",
+        "At multiplier 0.4 (la), 50 to 75 % of 8 walls have collapsed; 95 % interval 20 to 90 %.",
+        "Most depends on size (Borgonovo's delta 0.61) by fe.",
+    ]
+    found["sensitivity"]["delta_confidence"] = 0.21
+    assert findings(found, [])[-1] == (
+        "Whether size or friction matters more, 50 walls do not decide by fe (Borgonovo's delta 0.61 and 0.20)."
+    )
+
+
+def test_walls_of_a_study_are_counted_by_whether_families_agree():
+    agree = {"agree": ["yes", "no", "no", "open", ""], "most_percent": [0.1, 3.0, 7.5, 9.0, math.nan]}
+    assert answer({"agreement": pd.DataFrame(agree)}) == (
+        "The families agree within 1 % on 1 of 5 walls and differ on 2, by up to 7.5 %; on 1 brackets do not decide; 1 "
+        "lack the answer of a family."
+    )
+    assert answer({"agreement": pd.DataFrame({"agree": ["yes"], "most_percent": [0.1]})}) == (
+        "The families agree within 1 % on 1 of 1 wall."
+    )
+
+
+def test_what_is_given_of_a_wall_is_told_with_its_units():
+    """Three courses of .8 m of bricks .4 x .2 m, 20 kN a cubic metre and 1 m thick, on a ground as high as a course."""
+    facts = dict(wall_summary(samples.bond()))
+    assert facts["Blocks"] == "8 free, 1 fixed"
+    assert facts["Friction tan φ"] == "0.65"
+    assert facts["Size"] == "0.8 × 0.8 m"
+    assert facts["Weight of free blocks"] == "9.6 kN"
+    assert facts["Live load"] == "to the right"
+    assert "Gravity" not in facts
+    tilted = wall_case(running_bond(3, 2), loads={"gravity": [0.123456, -0.98765]})
+    told = dict(wall_summary(tilted))
+    assert told["Gravity"] == "(0.1235, −0.9877) times the weight"
+    assert told["Live load"] == "none: only stability is analysed"
+
+
+@pytest.mark.parametrize(
+    ("frictions", "text"),
+    [
+        ([0.5, 0.7], "0.5, 0.7"),
+        ([0.1, 0.2, 0.3, 0.4], "0.1, 0.2, 0.3, 0.4"),
+        ([0.1, 0.2, 0.3, 0.4, 0.51234567], "0.1 to 0.5123"),
+    ],
+)
+def test_few_frictions_are_listed_and_many_are_a_range(frictions: list[float], text: str):
+    wall = samples.bond(courses=5).assembly
+    values = np.resize(np.array(frictions), wall.n_interfaces)
+
+    class Wall:
+        friction = values
+
+    assert friction_text(Wall()) == text  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("found", "text"),
+    [
+        (numbers.plain(0.99996, 4), "1.000"),
+        (numbers.plain(9.9999996), "10.000"),
+        (numbers.plain(1234567.0), "1.23×10⁶"),
+        (numbers.plain(123456.0), "123456"),
+        (numbers.plain(1e-4, 3), "0.000100"),
+        (numbers.plain(0.9e-4, 3), "9×10⁻⁵"),
+        (numbers.plain(1234567.0, 8), "1234567.0"),
+        (numbers.given(1e-5), "10⁻⁵"),
+        (numbers.given(1.25e-5), "1.25×10⁻⁵"),
+        (numbers.given(-1.5e7), "−1.5×10⁷"),
+        (numbers.given(123456.7, 3), "123000"),
+        (numbers.given(0.0), "0"),
+        (numbers.given(0.476190476), "0.47619"),
+        (numbers.power(-1.0), "−10⁰"),
+        (numbers.power(2.5e-16, 2), "2.5×10⁻¹⁶"),
+        (numbers.power(math.inf), "not finite"),
+        (numbers.multiplier(0.123456, 2), "0.12"),
+        (numbers.multiplier(12.3456, 1), "12.3"),
+        (numbers.multiplier(0.123456, 9), "0.12346"),
+        (numbers.multiplier(0.00123, 1), "0.001"),
+        (numbers.multiplier(None), "–"),
+        (numbers.interval((0.5, 0.25)), "[0.50000, 0.25000]"),
+        (numbers.memory(999_999_999), "1000 MB"),
+        (numbers.memory(2_340_000_000), "2.34 GB"),
+        (numbers.memory(None), "–"),
+        (numbers.percent(None), "–"),
+        (numbers.percent(math.nan), "–"),
+        (numbers.percent(0.12345, 1), "+12.3 %"),
+        (numbers.seconds(0.00099951), "1 ms"),
+        (numbers.seconds(99.0), "99 s"),
+        (numbers.seconds(99.6), "1.66 min"),
+        (numbers.seconds(5969.0), "99.5 min"),
+        (numbers.seconds(5971.0), "1.66 h"),
+        (numbers.every_digit([0.1, (1, 2.5)]), "[0.1, [1, 2.5]]"),
+        (numbers.count(2, "class"), "2 classes"),
+        (numbers.count(0, "wall"), "0 walls"),
+    ],
+)
+def test_numbers_are_written_as_people_read_them(found: str, text: str):
+    assert found == text
+
+
+def test_curves_of_a_measured_answer_show_its_steps_and_the_bracket_of_every_order():
+    case = samples.bond()
+    orders = [{"order": "up", "held": 0.5, "moving": 0.6}, {"order": "down", "held": 0.45, "moving": 0.62}]
+    row = samples.solved(
+        case,
+        "de",
+        0.55,
+        flow="approximate",
+        bracket=(0.5, 0.6),
+        path={"multiplier": [0.0, 0.5, 0.7, 0.55, 0.6], "residual": [0.0] * 5},
+        details={"orders": orders, "reporting_order": "up"},
+    )
+    (told, steps), (named, brackets) = curves.curves(CaseResults(case, [row]))
+    assert told == (
+        "de: the load steps of the reported sweep order narrow the bracket from both sides (2 sweep orders tried)."
+    )
+    shown = {line.name: list(zip(line.x, line.y, strict=True)) for line in steps.chart.series}  # type: ignore[attr-defined]
+    assert shown == {
+        "held": [(1.0, 0.0), (2.0, 0.5)],
+        "moving": [(3.0, 0.7), (5.0, 0.6)],
+        "undecided": [(4.0, 0.55)],
+    }
+    assert named == "de: held and moving for every sweep order (1 up, 2 down)."
+    held, moving = brackets.chart.series  # type: ignore[attr-defined]
+    assert (held.x, held.y) == ([1.0, 2.0], [0.5, 0.45])
+    assert (moving.x, moving.y, moving.low, moving.high) == ([1.0, 2.0], [0.6, 0.62], [0.5, 0.45], [0.6, 0.62])
+    one = row.model_copy(update={"details": {"orders": orders[:1], "reporting_order": "up"}})
+    ((told, _),) = curves.curves(CaseResults(case, [one]))
+    assert told.endswith("(1 sweep order tried).")
+
+
+def test_a_load_path_has_the_levels_that_differ_and_the_place_of_every_step():
+    case = samples.bond()
+    path = {"multiplier": [0.2, 0.5, 0.4, 0.4], "live_displacement": [0.0, 0.001, 0.002, 0.004]}
+    row = samples.solved(case, "fe", 0.4, path=path, details={"peak": 0.5, "plateau": 0.4})
+    above = samples.solved(case, "la-associated", 0.5002, flow="associated")
+    ((_, drawn),) = curves.curves(CaseResults(case, [row, above]))
+    chart = drawn.chart  # type: ignore[attr-defined]
+    assert chart.levels == [("associated maximum 0.50020", 0.5002), ("plateau 0.40000", 0.4)], "the peak is as high"
+    assert chart.series[0].x == [0.0, *path["live_displacement"]]
+    assert chart.series[0].y == [0.0, *path["multiplier"]]
+    assert (chart.x_label, chart.zero_y) == ("displacement of the live load [m]", True)
+
+
+def test_proportions_are_those_of_most_bricks():
+    assert families.proportion_of(samples.bond(length=0.5).assembly) == pytest.approx(2.5)
+    arch = wall_case({"type": "ring", "inner_radius": 2.0, "outer_radius": 2.3, "count": 7})
+    assert families.proportion_of(arch.assembly) is None
+
+
+def test_walls_are_one_family_only_where_their_loads_are_alike():
+    def wall(push: tuple[float, float], friction: float, gravity: tuple[float, float] = (0.0, -1.0)) -> Case:
+        loads = {"live": {"body": [{"per_weight": list(push)}]}, "gravity": list(gravity)}
+        return wall_case(running_bond(3, 2), friction, loads=loads)
+
+    def studies(cases: list[Case]) -> int:
+        items = [CaseResults(case, [samples.solved(case, "la", 0.5)]) for case in cases]
+        return len(families.families(ComparisonRun("", "", "", items)))
+
+    frictions = (0.4, 0.6, 0.8)
+    assert studies([wall((1.0, 0.0), mu) for mu in frictions]) == 1
+    assert studies([wall((1.0, 0.0 if mu < 0.7 else -0.5), mu) for mu in frictions]) == 0
+    assert studies([wall((1.0, 0.0), mu, (0.0, -1.0 if mu < 0.7 else -1.5)) for mu in frictions]) == 0
+
+
+def test_head_joints_are_those_within_thirty_degrees_of_upright():
+    wall = samples.bond().assembly
+    forces = np.zeros((wall.n_interfaces, 3))
+    heads = np.abs(wall.normal[:, 0]) > 0.9
+    forces[heads, 0], forces[~heads, 0] = 0.5, 100.0
+    share = 0.5 * heads.sum() / float(wall.weight[wall.free].sum())
+    assert thrust_lines.head_thrust(wall, forces.tolist()) == pytest.approx(share)
+    assert thrust_lines.head_thrust(samples.block().assembly, [(1.0, 1.0, 0.0)] * 2) is None
+
+
+def test_one_of_many_arrows_is_drawn_so_that_sixty_are_at_most():
+    assert [shapes.drawn_every(number) for number in (0, 1, 60, 61, 120, 121)] == [1, 1, 1, 2, 2, 3]
