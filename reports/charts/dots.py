@@ -198,7 +198,10 @@ def _row(plot: DotPlot, row: DotRow, lanes: dict[str, int], number: int) -> Mark
 
 
 def _labels(scale: Scale) -> list[tuple[float, str]]:
-    """Places and texts of ticks, those left out that have no room beside others; what the axis counts from has some."""
+    """Places and texts of ticks, those left out that have no room beside others.
+
+    What the axis counts from comes first: it has its label on every axis, and on a phone, which shows every other one.
+    """
     kept: list[tuple[float, str]] = []
     for value in sorted(scale.ticks, key=lambda value: value != 0.0):
         place, text = scale.place(value), scale.text(value)
@@ -206,7 +209,7 @@ def _labels(scale: Scale) -> list[tuple[float, str]]:
             abs(place - other) >= ROOM * (len(text) + len(said)) / 2.0 for other, said in kept
         ):
             kept.append((place, text))
-    return sorted(kept)
+    return kept
 
 
 def _grid_id(plot: DotPlot) -> str:

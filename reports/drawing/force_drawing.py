@@ -91,7 +91,7 @@ def _groups(
             parts.append(Lines("thrust", (lines[k],), width[k]))
         share = used[p] if used[p] >= 0 else None
         drawn.append(Group(tuple(parts), joint=p, values=(*forces[p].tolist(), share)))
-    if "forces" in layers and len(found.size) <= thrust_lines.LABELLED:
+    if "forces" in layers:
         drawn.extend(_sizes(ends, np.array(width), heads, found.size))
     return drawn
 
@@ -130,7 +130,7 @@ def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> 
 
 
 def _sizes(ends: FloatArray, width: FloatArray, heads: FloatArray, sizes: FloatArray) -> list[Text]:
-    """The sizes of forces beside their arrows (p, 2, 2), of the largest first, where one covers no arrow and no other.
+    """The sizes of the largest forces beside their arrows (p, 2, 2), where one covers no arrow and no other.
 
     A number stands on either side of the middle of its arrow, or of its upper or lower part, as near as it can.
     """
@@ -140,7 +140,7 @@ def _sizes(ends: FloatArray, width: FloatArray, heads: FloatArray, sizes: FloatA
     beside = CLEAR + np.where(to_tip < heads, 0.4 * to_tip, 0.5 * width).ravel()
     placed: list[Text] = []
     centres, halves = np.empty((0, 2)), np.empty((0, 2))
-    for k in np.argsort(-sizes, kind="stable").tolist():
+    for k in np.argsort(-sizes, kind="stable")[: thrust_lines.LABELLED].tolist():
         if sizes[k] < _WORTH * sizes.max():
             break
         text = numbers.given(float(sizes[k]), 3)

@@ -30,7 +30,7 @@ SHORTEST = 0.4
 """Share of its length that an arrow keeps at least where it is shortened because a greater force crosses it."""
 
 LABELLED = 45
-"""Up to so many forces carry their size; more would cover each other."""
+"""So many of the largest forces carry their size where it has room: more in one drawing are not read."""
 
 
 def has_line_of_thrust(assembly: Assembly, found: Thrusts) -> bool:

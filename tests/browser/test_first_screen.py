@@ -196,3 +196,15 @@ def test_overview_is_sorted_by_difference(browser: Browser, report: Path):
     top = opened.page.locator(names.first.get_attribute("href") or "").evaluate("e => e.getBoundingClientRect().top")
     assert abs(top - UNDER_MENU) <= 3
     opened.context.close()
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE, WIDE], ids=["desktop", "phone", "wide"])
+def test_the_overview_says_what_it_counts_from(browser: Browser, report: Path, size: Any):
+    opened = Opened(browser, report, size)
+    labels = opened.page.locator("#dots .ticks span span")
+    shown = labels.evaluate_all(
+        "all => all.filter((e) => e.checkVisibility({ checkVisibilityCSS: true })).map((e) => e.textContent)"
+    )
+    opened.context.close()
+    assert "least" in shown
+    assert len(shown) > 1

@@ -14,9 +14,9 @@ from tests.reports import samples
 Named = list[tuple[str, shapely.Polygon]]
 
 
-def drawn(sizes: np.ndarray, slope: float) -> tuple[Named, Named]:
+def drawn(sizes: np.ndarray, slope: float, courses: int = 3) -> tuple[Named, Named]:
     """The numbers with their boxes, and the arrows with the number that each would carry."""
-    case = samples.bond(courses=3, bricks=3)
+    case = samples.bond(courses=courses, bricks=3)
     count = case.assembly.n_interfaces
     normal = np.resize(sizes, count)
     forces = [(0.5 * n, 0.5 * n, slope * n) for n in normal.tolist()]
@@ -53,3 +53,14 @@ def test_the_largest_force_has_its_number_where_not_all_have_room():
     boxes, arrows = drawn(np.linspace(0.06, 1.0, 23), 0.4)
     assert len(boxes) < len(arrows)
     assert max(float(name) for name, _ in arrows) in [float(text) for text, _ in boxes]
+
+
+def test_of_many_forces_the_largest_have_their_numbers():
+    boxes, arrows = drawn(np.linspace(0.2, 1.0, 66), 0.3, courses=8)
+    said = [float(text) for text, _ in boxes]
+    named = sorted((float(name) for name, _ in arrows), reverse=True)
+    assert len(named) > 60
+    assert 8 < len(said) <= 45
+    assert said == sorted(said, reverse=True)
+    assert said[0] >= named[10]
+    assert said[-1] >= named[44]
