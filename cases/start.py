@@ -197,7 +197,7 @@ def facade(
         course += 1
         blocks += _blocks(bond, course, [(0.0, total)], brick)
     return _standing(
-        f"Facade of {storeys} storeys with {openings} openings each, {bond} bond", blocks, total * brick_length,
+        f"Facade: storeys {storeys}, openings in each {openings}, {bond} bond", blocks, total * brick_length,
         friction=friction, thickness=thickness,
     )  # fmt: skip
 

@@ -347,8 +347,8 @@ def _series(series: Series, number: int, across: Axis, up: Axis, aside: float) -
     if series.marks or len(points) == 1:
         for px, py, x, y in points:
             drawn += Markup(
-                '<path {} transform="translate({:.1f} {:.1f}) scale({})" d="{}"><title>{}</title></path>'
-            ).format(marker, px, py, round(size, 2), shape, f"{series.name}: {x:.6g}, {y:.6g}")
+                '<path {} transform="translate({:.1f} {:.1f}) scale({:.3g})" d="{}"><title>{}</title></path>'
+            ).format(marker, px, py, size, shape, f"{series.name}: {x:.6g}, {y:.6g}")
     return drawn
 
 

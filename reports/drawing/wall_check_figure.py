@@ -178,10 +178,9 @@ def _overall(ax: Axes, extent: shapes.Extent, margin: float, sheet: Sheet) -> No
 
 def _axes(ax: Axes, extent: shapes.Extent, margin: float, unit: str, sheet: Sheet) -> None:
     """Coordinates of the file along two sides, and a bar of a round length."""
-    ax.tick_params(labelsize=sheet.text, length=2, width=0.4, color=COLOURS["grey"])
+    ax.tick_params(labelsize=sheet.text, color=COLOURS["grey"])
     for side, line in ax.spines.items():
         line.set_visible(side in ("left", "bottom"))
-        line.set_linewidth(0.4)
         line.set_color(COLOURS["grey"])
     ax.ticklabel_format(useOffset=False)
     for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
@@ -200,7 +199,7 @@ def _marks(ax: Axes, marks: Sequence[FaultMark], sheet: Sheet) -> None:
             there.setdefault(mark.at, []).append(number)
     for at, numbers in there.items():
         tint = COLOURS[LOOKS[marks[numbers[0] - 1].kind].stroke]
-        ax.plot(*at, "x", color=tint, markersize=3.5, markeredgewidth=0.8, zorder=8)
+        ax.plot(*at, "x", color=tint, markersize=0.6 * sheet.text)
         ax.annotate(
             ", ".join(str(number) for number in numbers),
             at,
@@ -209,9 +208,8 @@ def _marks(ax: Axes, marks: Sequence[FaultMark], sheet: Sheet) -> None:
             fontsize=sheet.text,
             fontweight="bold",
             color="white",
-            zorder=9,
             bbox={"boxstyle": "round,pad=0.2", "facecolor": tint, "edgecolor": "none"},
-            arrowprops={"arrowstyle": "-", "color": tint, "linewidth": 0.6},
+            arrowprops={"arrowstyle": "-", "color": tint},
         )
 
 

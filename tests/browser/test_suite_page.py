@@ -50,7 +50,7 @@ def test_page_is_ready_within_half_a_second_of_work(browser: Browser, small: Pat
     page.goto(small.as_uri())
     metrics = {item["name"]: item["value"] for item in session.send("Performance.getMetrics")["metrics"]}
     context.close()
-    assert 0.0 < metrics["TaskDuration"] < 0.75, "0.5 s is required; half as much again is for a slower processor"
+    assert 0.0 < metrics["TaskDuration"] < 0.5, "0.14 s on 28 November 2026, for 34,000 nodes"
 
 
 @pytest.mark.parametrize("paper", ["A4", "Letter"])
