@@ -14,7 +14,7 @@ from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status, Traits
 from harness.model.result import Verdict
-from reports.charts import curves, dots
+from reports.charts import curves, dots, studies
 from reports.charts.dots import Dot, DotPlot, DotRow
 from reports.charts.styles import SHAPES, Mark, mark_named
 from reports.drawing.display_list import Text
@@ -146,6 +146,37 @@ def test_the_appendix_lists_blocks_and_sums_of_loads_in_four_digits():
             provenance={"versions": {"drystone": "0.1"}},
         )
     )
+
+
+def test_the_appendix_says_that_crushing_is_left_out_of_walls_that_do_not_crush():
+    case = wall_case(stack(2), 0.5, compressive_strength=500.0)
+    assert case.assembly.crushes
+    text = appendix.render(
+        replace(
+            run_of(CaseResults(case, [samples.solved(case, "la", 0.5)])), provenance={"versions": {"drystone": "0.1"}}
+        )
+    )
+    assert "joints crush by a rectangular stress block" in text
+    assert "<li>Loss of strength, settlement, dynamics" in text
+    assert "Crushing, loss" not in text
+
+
+def test_a_profile_counts_the_cases_that_no_method_solved():
+    def said(*items: CaseResults) -> str:
+        study = studies.performance_profile(run_of(*items))
+        assert study is not None
+        return study.sentence
+
+    case = samples.bond()
+    solved = CaseResults(case, [samples.solved(case, "fe", 0.5, cpu=1.0), samples.solved(case, "la", 0.5, cpu=2.0)])
+    failed = CaseResults(case, [samples.failed(case, "fe", Status.TIMEOUT, "")])
+    head = "How much of the 2 cases each method solved within a multiple of the fastest method's time"
+    assert said(solved, solved) == f"{head}."
+    assert said(solved, failed) == f"{head}; 1 case no method solved."
+    ((_, drawn),) = studies.performance_profile(run_of(solved, failed)).charts  # type: ignore[union-attr]
+    fe, la = drawn.chart.series  # type: ignore[attr-defined]
+    assert (fe.x, fe.y) == ([1.0, 10.0], [0.5, 0.5])
+    assert (la.x, la.y) == ([2.0, 10.0], [0.5, 0.5])
 
 
 def test_the_caption_of_a_wall_says_which_loads_are_drawn():

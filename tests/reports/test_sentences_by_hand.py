@@ -130,6 +130,16 @@ def test_why_two_states_part_is_told_in_joints_cosine_and_the_work_of_friction()
     ]
 
 
+def test_the_polar_moment_of_a_triangle_is_that_of_the_textbook():
+    """A right triangle with legs a and b has A (a^2 + b^2) / 18 about its centroid."""
+    corners = np.array([[1.0, 2.0], [4.0, 2.0], [1.0, 3.0]])
+    expected = 0.5 * 3.0 * 1.0 * (9.0 + 1.0) / 18.0
+    for turn in (0.0, 0.7):
+        way = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        turned = corners @ way
+        assert agreement._polar_moment(turned, turned.mean(axis=0)) == pytest.approx(expected)
+
+
 @pytest.mark.parametrize(
     ("motion", "said"),
     [
