@@ -213,6 +213,13 @@ def test_markers_are_polygons_and_stars_of_one_size_about_their_point():
     assert abs(points_of(SHAPES["8"])[0, 0]) == pytest.approx(4.3 * math.sin(math.pi / 8), abs=0.01)
 
 
+def test_a_point_alone_is_marked_and_points_of_a_line_where_that_is_wanted():
+    for x, marks, number in (([1.0], False, 1), ([1.0, 2.0], False, 0), ([1.0, 2.0], True, 2), ([1.0], True, 1)):
+        root = drawn(charts.Chart("t", "x", "y", [charts.Series("a", x, x, marks=marks)]))
+        assert len(of_class(root, "mark")) == number
+        assert len(of_class(root, "line")) == (len(x) > 1)
+
+
 def test_a_series_of_a_method_has_its_colour_marker_and_dashes():
     mark = Mark("#123456", "s", "dashed")
     root = drawn(charts.Chart("t", "x", "y", [charts.Series("a", [0.0, 1.0], [0.0, 1.0], mark=mark)]))

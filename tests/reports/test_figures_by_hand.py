@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -11,6 +12,7 @@ from matplotlib.collections import LineCollection, PathCollection, PolyCollectio
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from PIL import Image
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from reports.charts.multipliers import multipliers_figure
@@ -252,3 +254,16 @@ def test_frames_gather_speed_up_to_twice_the_displacement_that_the_report_draws(
     np.testing.assert_allclose(scales, 0.25 * np.linspace(0.0, 1.0, 28) ** 2)
     assert len(pictures) == 28
     assert pictures[0].size[0] == pytest.approx(160 * COLUMN, abs=1)
+
+
+def test_an_animation_stands_still_at_both_ends_and_runs_at_seventeen_frames_a_second(tmp_path: Path):
+    case = samples.block()
+    steps = [[[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5 * k, 0.0, 0.0]] for k in range(4)]
+    result = samples.solved(case, "de-tilt", 0.5, details={"release": {"frames": steps}})
+    animate.animate(case, result, tmp_path / "a.gif")
+    durations = []
+    with Image.open(tmp_path / "a.gif") as image:
+        for frame in range(image.n_frames):
+            image.seek(frame)
+            durations.append(image.info["duration"])
+    assert durations == [900, 60, 60, 900]  # milliseconds

@@ -99,6 +99,7 @@ def test_the_paper_s_values_stand_beside_ours():
     block, cost = opened.parts
     assert opened.case == "wall-21"
     assert "Limit analysis leaves 0.40000 to 0.54545; FE 0.47619, DE [0.41270, 0.54550]" in block.sentence
+    assert "<span>0.4, 0.476, 0.545</span>" in block.plot
     assert re.findall(r"<title>(\w[^<]*)</title>", str(block.plot))[:3] == ["fe 0.476", "la 0.4", "la-associated 0.545"]
     assert "FE : LA : DE is 20 : 15 : 360 in the paper and 20 : 10 : 400 here" in cost.sentence
     assert "20 → 20" in cost.plot

@@ -94,3 +94,7 @@ def test_strength_of_some_joints_is_told_with_their_number():
         f"cohesion c A 0 to 2 kN, tension T 0 kN; {beds} of {wall.n_interfaces} interfaces"
     )
     assert strength_text(assembly(bond), "kN") == ""
+    strong = assembly(stack(1, 0.5, 0.2), 0.5, cohesion=2.0, tensile_strength=3.0, compressive_strength=100.0)
+    assert strength_text(strong, "kN") == (
+        "cohesion c A 1 kN, tension T 1.5 kN; all interfaces; crushing force f_c A 50 kN; all interfaces"
+    )
