@@ -14,7 +14,7 @@ from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status, Traits
 from harness.model.result import Verdict
-from reports.charts import curves, dots, studies
+from reports.charts import curves, dots, families, studies
 from reports.charts.dots import Dot, DotPlot, DotRow
 from reports.charts.styles import SHAPES, Mark, mark_named
 from reports.drawing.display_list import Text
@@ -23,6 +23,7 @@ from reports.drawing.wall_drawing import wall_drawing
 from reports.findings.joints import joint_states, open_with_force
 from reports.geometry import shapes, thrust_lines
 from reports.page import appendix, build, glance, page_drawings, sections, study_page, summary, tables, vectors
+from reports.page.governing import governing
 from tests.reports import samples
 from tests.walls import case as wall_case
 from tests.walls import running_bond, stack
@@ -420,3 +421,53 @@ def test_names_of_blocks_are_their_ids_where_these_are_short_and_numbers_elsewhe
     large = wall_case(running_bond(14, 11))
     assert large.assembly.n_blocks > 160
     assert wall_parts(large) == []
+
+
+def test_the_most_critical_joints_are_listed_by_their_blocks_and_what_limits_them():
+    case = samples.bond("mine")
+    found = governing([CaseResults(case, [samples.solved(case, "la", 0.3)])])
+    assert [column.head for column in found.joint_columns] == [
+        "block a",
+        "block b",
+        "state",
+        "shear",
+        "eccentricity",
+        "N [kN]",
+        "s [kN]",
+        "e / L",
+        "edge stress [kN/m2]",
+    ]
+
+
+def test_a_cell_of_words_has_them_and_a_dash_where_there_are_none():
+    case = samples.bond()
+    result = samples.solved(case, "la", 0.5).model_copy(update={"sentence": "said"})
+    row = tables.run_row(0, 0, CaseResults(case, [result]))
+    assert (row.cell("method").text, row.cell("sentence").text) == ("la", "said")
+    empty = tables.run_row(0, 0, CaseResults(case, [result.model_copy(update={"sentence": ""})]))
+    assert empty.cell("sentence").text == "–"
+
+
+def test_rows_of_a_long_table_of_a_study_that_are_left_out_are_counted():
+    heads, rows, left = study_page._cells(pd.DataFrame({"a": range(403), "b_low": 1.0, "b_high": 1.5}))
+    assert (heads, len(rows), left) == (["a", "b"], 400, 3)
+    assert rows[399] == ["399", "1 to 1.5"]
+
+
+def test_families_of_two_walls_stand_side_by_side_with_a_caption_each():
+    items = []
+    for length in (0.4, 0.6):
+        for friction in (0.4, 0.6, 0.8):
+            case = samples.bond(f"wall-{len(items)}", title=f"Bricks of {length}", length=length, friction=friction)
+            items.append(CaseResults(case, [samples.solved(case, "la", friction, turn=0.3 * (friction > 0.7))]))
+    (study,) = families.families(run_of(*items))
+    assert study.sentence == ("The same wall with 3 values of friction, all methods in one plot; 2 walls side by side.")
+    changes = "The mechanism changes between 0.6 and 0.8."
+    assert [caption for caption, _ in study.charts] == [
+        f"Bricks of {length}, and the same with other friction. {changes}" for length in (0.4, 0.6)
+    ]
+
+
+def test_differences_of_ten_thousand_percent_have_a_tick():
+    ticks = dots.Above([0.0, 150.0]).ticks
+    assert ticks == [-0.001, 0.0, 0.001, 0.01, 0.1, 1.0, 10.0, 100.0]
