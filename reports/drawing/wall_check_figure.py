@@ -78,7 +78,7 @@ def inspected_figure(
         width, height = extent.width + 2 * margin, extent.height + 2 * margin
         told = _legend(looked.marks, sheet)
         tall = PAGE * min(height / width, sheet.tallest)
-        foot = (0.35 if axes else 0.02) + 1.35 * sheet.text / 72 * len(told)
+        foot = (0.35 if axes else 0.0) + 1.35 * sheet.text / 72 * len(told)
         page = Figure(figsize=(PAGE, tall + foot))
         ax = page.add_axes((0.08, foot / (tall + foot), 0.9, tall / (tall + foot)))
         ax.set_xlim(extent.left - margin, extent.right + margin)

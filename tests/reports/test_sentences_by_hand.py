@@ -11,13 +11,14 @@ import pytest
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.method import Finding
 from reports.charts import curves, families, grid
 from reports.charts.grid import GridCell
 from reports.charts.study_findings import answer, findings
 from reports.findings import agreement, reasons
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
-from reports.labels.wall_summary import friction_text, wall_summary
+from reports.labels.wall_summary import friction_text, value_in_words, wall_summary
 from reports.page import paper, tables
 from tests.reports import samples
 from tests.walls import case as wall_case
@@ -128,6 +129,16 @@ def test_why_two_states_part_is_told_in_joints_cosine_and_the_work_of_friction()
     assert reasons.reasons(CaseResults(case, [slides, still])) == [
         "la and fe (+10.00 %): mechanisms differ: 2 joints slide in la only; 1 block moves in la only."
     ]
+
+
+def test_a_value_is_its_bracket_only_where_it_is_measured():
+    case = samples.bond()
+    bounded = samples.solved(case, "la", 0.5, bracket=(0.4, 0.5))
+    assert value_in_words(bounded) == "0.50000", "a lower bound beside a value leaves it one"
+    measured = bounded.model_copy(update={"flow": "approximate", "bracket": (0.49, 0.51)})
+    assert value_in_words(measured) == "[0.49000, 0.51000]"
+    assert value_in_words(measured.model_copy(update={"bracket": None})) == "0.50000"
+    assert value_in_words(bounded.model_copy(update={"finding": Finding.STANDS})) == "stands"
 
 
 def test_the_polar_moment_of_a_triangle_is_that_of_the_textbook():
