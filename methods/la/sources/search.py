@@ -98,8 +98,8 @@ class Search:
         self.budget.limits = limits
         self.ends.clear()
 
-    def at_friction(self, problem: Problem) -> Search:
-        """A search of the same wall with other friction coefficients, which serves this one."""
+    def varied(self, problem: Problem) -> Search:
+        """A search of the same wall with other friction coefficients or weights, which serves this one."""
         return Search(problem, self.newton, parent=self)
 
     @cached_property
