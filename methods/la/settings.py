@@ -40,8 +40,8 @@ class SearchSettings(Settings):
     Attributes:
         seed: of all random draws.
         effort: "quick" few paths and descents; "normal" continuation in friction too, less of it on large walls; "deep"
-            much of everything, and random starts, whatever the size.
-        starts: random interior starts; None as `effort` says.
+            much of everything, whatever the size.
+        starts: central paths with other weights of the blocks; None as `effort` says.
         ladder: factors on friction for the continuation, in order; None as `effort` says, empty for none.
         failures: draws without success that end a ray descent; None as `effort` says.
         rational_interfaces: interfaces up to which the result is confirmed in fractions.

@@ -20,6 +20,8 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
+from methods.la.sources.budget import SearchLimits
+from methods.la.sources.paths import OtherWeights
 from methods.la.sources.search import Search
 from methods.proof.search.bracket import bracket
 from methods.proof.search.relaxation import Relaxation
@@ -107,7 +109,8 @@ def test_products_of_collapse_states_satisfy_the_relaxation(wall: Assembly) -> N
     search = Search(problem, NewtonMatrix(problem))
     equations = equations_of(problem)
     programme = SlackProgramme(equations)
-    states = [state for state in (search.interior(spread=2.0) for _ in range(3)) if state is not None]
+    search.budget.limits = SearchLimits(starts=6)
+    states = list(OtherWeights().states(search))
     assert states
     for state, share, limited in itertools.product(states, (0.0, 0.97), (0, 3)):
         low, high = share * state.multiplier, 1.01 * state.multiplier

@@ -154,6 +154,14 @@ def test_deep_search_begins_with_a_normal_one() -> None:
     assert deep.multiplier <= normal.multiplier <= 0.2841945  # 0.7 % lower than before paths ended in programmes
 
 
+def test_central_paths_with_other_block_weights_lead_to_states_that_none_of_the_wall_reaches():
+    """The state is that of `la-paper`: it turns a corner of eight blocks, and no draw and no deep search led to it."""
+    wall = build(random_wall(7)).assembly
+    without, found = (LimitAnalysis().solve(wall, SearchSettings(starts=starts)).multiplier for starts in (0, None))
+    assert without == pytest.approx(223 / 330, abs=1e-9)
+    assert found == pytest.approx(24 / 37, abs=1e-9)
+
+
 def test_forces_of_the_least_multiplier_do_not_hang_on_where_the_solver_comes_from():
     """The lintel's joints are redundant: after other programmes the simplex method would end at other forces."""
     wall = library_wall("opening-lintel").assembly

@@ -86,31 +86,17 @@ class PathResult:
     history: list[float]
 
 
-def start_point(
-    problem: Problem,
-    spread: float = 0.0,
-    generator: np.random.Generator | None = None,
-    tight: BoolArray | None = None,
-) -> Point:
-    """A centred point off equilibrium: unit compression, no shear; `spread` > 0 randomises it by factors exp(+-).
-
-    Slacks of `tight` (m, 4) start at zero and stay there.
-    """
-    m = problem.n_interfaces
-    normal, tilt, target = np.ones((m, 2)), np.zeros(m), np.ones((m, 4))
-    if spread > 0.0 and generator is not None:
-        normal = np.exp(generator.uniform(-spread, spread, (m, 2)))
-        tilt = generator.uniform(-0.5, 0.5, m)
-        target = np.exp(generator.uniform(-spread, spread, (m, 4)))
+def start_point(problem: Problem, tight: BoolArray | None = None) -> Point:
+    """A centred point off equilibrium: unit compression, no shear. Slacks of `tight` (m, 4) are zero and stay there."""
     tight = close_tight(problem) if tight is None else tight
-    normal = np.minimum(normal, 0.25 * problem.law.greatest_compression[:, None])
+    normal = np.minimum(np.ones((problem.n_interfaces, 2)), 0.25 * problem.law.greatest_compression[:, None])
     normal = np.where(tight[:, :2], 0.0, normal)
-    tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, tilt))
+    tilt = np.where(tight[:, 2], -1.0, np.where(tight[:, 3], 1.0, 0.0))
     forces = np.column_stack([normal, tilt * problem.law.strength(normal)])
     slack = np.where(tight, 0.0, problem.slacks(forces))
     if not problem.law.is_cone:
         slack = np.where(tight, 0.0, np.maximum(slack, 1e-3))
-    rates = np.where(tight, 0.0, target / np.where(tight, 1.0, slack))
+    rates = np.where(tight, 0.0, 1.0 / np.where(tight, 1.0, slack))
     return Point(slack, 0.0, np.zeros(problem.n_velocities), rates)
 
 

@@ -11,7 +11,7 @@ from methods.la.sources.arcs import FAR, ArcPaths
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.mechanisms import GivenMechanisms
-from methods.la.sources.paths import AssociatedForces, CentralPath, RandomStarts, ReducedFriction, TrescaMechanisms
+from methods.la.sources.paths import AssociatedForces, CentralPath, OtherWeights, ReducedFriction, TrescaMechanisms
 from methods.la.sources.search import Search
 from methods.la.sources.source import Source
 from methods.la.sources.springs import AnalyticCentre, LowPrestress, ShiftedAssociated
@@ -26,13 +26,13 @@ SOURCES: tuple[Source, ...] = (
     ArcPaths(),
     LowPrestress(least=2001),
     CentralPath(most=1000),
-    RandomStarts(),
     FrictionContinuation(),
     ReducedFriction(factors=(0.3, 0.0), least=2001, anyway=False),
     TrescaMechanisms(),
     CentralPath(anyway=False),
     LowPrestress(most=2000),
     SingleBlocks(),
+    OtherWeights(),
     ArcPaths(near=FAR, far=(), anyway=False),
     ShiftedAssociated(),
     AnalyticCentre(),

@@ -18,7 +18,7 @@ class SearchLimits:
     """How much is tried.
 
     Attributes:
-        starts: random starts of the interior point.
+        starts: central paths of the wall with blocks of other weights.
         failures, draws: draws without a lower value that end a descent, and draws of one at most.
         descents: lowest states of each source, and of each rung, that are descended from.
         ladder: factors on friction of the rungs.
@@ -51,10 +51,11 @@ class Sizes:
 
     Attributes:
         few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
-            source on both; above, no rungs but those of rough joints, and one longer descent.
+            source on both; above, no rungs but those of rough joints, no other weights, and one longer descent.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree finishes within its nodes.
+        starts: with other weights, up to few blocks; half as many up to some.
         ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next. The fine one first
             goes down from above the friction of the wall.
     """
@@ -64,6 +65,7 @@ class Sizes:
     descended: int = 1000
     provable: int = 16
     provable_ring: int = 30
+    starts: int = 24
     ladder: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
     fine_ladder: tuple[float, ...] = (
         *(1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5),
@@ -81,12 +83,12 @@ class Sizes:
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
             return SearchLimits(
-                20, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000
+                100, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000
             )
         if blocks <= self.few_blocks:
-            return SearchLimits(0, 12, 200, 3, self.ladder, nodes)
+            return SearchLimits(self.starts, 12, 200, 3, self.ladder, nodes)
         if blocks <= self.some_blocks:
-            return SearchLimits(0, 12, 200, 3, self.ladder[::2], nodes)
+            return SearchLimits(self.starts // 2, 12, 200, 3, self.ladder[::2], nodes)
         if descents:
             return SearchLimits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
         return SearchLimits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)

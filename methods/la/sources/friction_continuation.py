@@ -59,7 +59,7 @@ class FrictionContinuation:
         for friction in self._rungs(search):
             if not search.budget.steps_left(search.record.known):
                 break
-            rung = search.at_friction(replace(search.problem, law=search.problem.law.with_friction(friction)))
+            rung = search.varied(replace(search.problem, law=search.problem.law.with_friction(friction)))
             states = [rung.interior()]
             if below is not None:
                 states += rung.adopt(below, self.pool)

@@ -1,10 +1,13 @@
-"""States at the ends of central paths: with smoother unloaded joints, of the wall itself, associated, random starts."""
+"""States at the ends of central paths: with smoother unloaded joints, as it is, associated, with other weights."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import ClassVar
+
+import numpy as np
 
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
@@ -44,7 +47,7 @@ class ReducedFriction:
                 return
             guide = with_reduced_friction(search.problem, factor)
             if guide is not None:
-                yield from self._states_of(search, search.at_friction(guide))
+                yield from self._states_of(search, search.varied(guide))
 
     def _states_of(self, search: Search, smooth: Search) -> Iterator[CollapseState]:
         end = smooth.path_end()
@@ -105,26 +108,40 @@ class AssociatedForces:
 
 
 @dataclass(frozen=True)
-class RandomStarts:
-    """Central paths from random starts, as many as the budget says.
+class OtherWeights:
+    """Central paths of the wall with blocks of other weights, as many as the budget says.
+
+    Mechanisms do not depend on the weights, only the forces that fit them do. With random weights the central path
+    goes by other forces, and ends at mechanisms that it misses with those of the wall, from any start. Unloaded joints
+    have a part of their friction, as in `ReducedFriction`.
 
     Attributes:
-        spread: forces and rates of a start are off by factors of e to this power at most.
+        spread: weights are between 1 - spread and 1 + spread times those of the wall.
+        factor: on the friction of the unloaded joints.
     """
 
-    name: ClassVar[str] = "random starts"
-    spread: float = 2.0
+    name: ClassVar[str] = "other block weights"
+    spread: float = 0.6
+    factor: float = 0.3
 
     def applies(self, problem: Problem) -> bool:
         """On every wall."""
         return True
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state a start that leads to one."""
+        """One state a path that leads to a mechanism which forces of the wall fit."""
+        guide = with_reduced_friction(search.problem, self.factor) or search.problem
+        blocks = search.problem.n_velocities // 3
         for _ in range(search.budget.limits.starts):
-            state = search.interior(self.spread)
-            if state is not None:
-                yield state
+            if not search.budget.steps_left(search.record.known):
+                return
+            shares = search.generator.uniform(1.0 - self.spread, 1.0 + self.spread, size=blocks)
+            other = search.varied(replace(guide, dead=guide.dead * np.repeat(shares, 3)))
+            with suppress(SingularMatrix):  # It ends one path, not the search.
+                end = other.path_end()
+                state = None if end is None else search.nearest_state(end.point.slack, end.point.rates)
+                if state is not None:
+                    yield state
 
 
 @dataclass(frozen=True)

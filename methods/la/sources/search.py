@@ -1,4 +1,4 @@
-"""The search for low collapse states: exact programme on a mechanism, ray descent, seeded restarts.
+"""The search for low collapse states: exact programme on a mechanism, ray descent.
 
 Without loss of generality the mechanism is an extreme ray of {g >= 0, C u = E g}. For a mechanism that moves in the
 contacts J the best multiplier is the linear programme lambda(J) = min lambda s.t. equilibrium, S r >= 0, y_J = 0.
@@ -98,8 +98,8 @@ class Search:
         self.budget.limits = limits
         self.ends.clear()
 
-    def at_friction(self, problem: Problem) -> Search:
-        """A search of the same wall with other friction coefficients, which serves this one."""
+    def varied(self, problem: Problem) -> Search:
+        """A search of the same wall with other friction coefficients or weights, which serves this one."""
         return Search(problem, self.newton, parent=self)
 
     @cached_property
@@ -228,14 +228,14 @@ class Search:
         self.stepped(result.iterations)
         return result
 
-    def path_end(self, spread: float = 0.0) -> PathResult | None:
-        """Where the interior point leads from the centred or a random start; None if far from complementarity."""
-        result = self.follow(start_point(self.problem, spread, self.generator), self.choices.central)
+    def path_end(self) -> PathResult | None:
+        """Where the interior point leads from the centred start; None if far from complementarity."""
+        result = self.follow(start_point(self.problem), self.choices.central)
         return None if result.gap > self.choices.widest_gap else result
 
-    def interior(self, spread: float = 0.0) -> CollapseState | None:
-        """The exact state nearest to where the interior point leads, from the centred or a random start."""
-        end = self.path_end(spread)
+    def interior(self) -> CollapseState | None:
+        """The exact state nearest to where the interior point leads from the centred start."""
+        end = self.path_end()
         return None if end is None else self.nearest_state(end.point.slack, end.point.rates)
 
     def as_one_block(self, state: CollapseState) -> CollapseState | None:
