@@ -10,9 +10,6 @@ from harness.model.method import load_method
 from harness.model.result import Result
 from tests.walls import assembly
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
-"""The 21 bricks, of length one."""
-
 
 def found(name: str, wall: Assembly, **settings: Any) -> Result:
     """The answer of a method, which the judge accepts."""

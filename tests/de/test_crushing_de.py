@@ -16,7 +16,8 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.result import Result, residual_of
 from methods.numerics.pressed_state import nearest_motion
 from methods.numerics.pressed_strips import pressed_shares, set_in
-from tests.pressed_walls import BOND, SEMICIRCLES, arch, found
+from tests.bonded_walls import BOND
+from tests.pressed_walls import SEMICIRCLES, arch, found
 from tests.walls import assembly, stack
 
 ACCURACY = 5e-3

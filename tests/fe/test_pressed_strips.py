@@ -17,9 +17,10 @@ from harness.model.result import Result, residual_of, result_of
 from harness.model.wall import Wall
 from methods.numerics.pressed_state import exact_state, moving_rows
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
+from tests.bonded_walls import BOND
 from tests.cooked import KINDS, SLACK, TOLERANCE
 from tests.known_walls import Item
-from tests.pressed_walls import BOND, DIGITS, SEMICIRCLES, arch, found
+from tests.pressed_walls import DIGITS, SEMICIRCLES, arch, found
 from tests.walls import assembly, running_bond, stack, wall_data
 
 TAKE = ("fe", "la")
@@ -60,9 +61,7 @@ SEARCHED = [pytest.param(*row, marks=[] if row[1] == 5.0 else pytest.mark.slow) 
 
 
 @pytest.mark.parametrize(("thickness", "strength", "value"), SEARCHED)
-def test_least_known_state_of_a_semicircle_that_does_not_slide(
-    thickness: float, strength: float | None, value: float
-):
+def test_least_known_state_of_a_semicircle_that_does_not_slide(thickness: float, strength: float | None, value: float):
     assert found("la", arch(thickness, strength)).multiplier == pytest.approx(value, abs=DIGITS)
 
 

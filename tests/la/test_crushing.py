@@ -22,8 +22,9 @@ from harness.model.method import Finding, load_method, method_names
 from harness.model.result import residual_of
 from harness.model.wall import Wall
 from methods.numerics.stress_blocks import block_dissipation, greatest_by_chords
+from tests.bonded_walls import BOND
 from tests.commands import drystone
-from tests.pressed_walls import BOND, DIGITS, SEMICIRCLES, arch, found
+from tests.pressed_walls import DIGITS, SEMICIRCLES, arch, found
 from tests.walls import assembly, running_bond, stack, wall_data
 
 HANGS = {"type": "panel", "cell_length": 1.0, "cell_height": 0.2, "layout": ["L", "B"], "fixed": "L"}
