@@ -21,10 +21,10 @@ from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.settings import HoldSettings
 from tests.commands import drystone as command
-from tests.la.test_reaction_command import DOWN, WEIGHT, data
+from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
 from tests.la.test_released_supports import AROUND
 from tests.la.test_ties import bar, block
-from tests.moving_supports import bricks, semicircle, weight
+from tests.moving_supports import BRICKS, bricks, semicircle, weight
 
 STATED = 5e-3
 
@@ -57,6 +57,29 @@ def test_block_on_a_base_that_settles():
         np.testing.assert_allclose(each.mechanism[fixed], sense * wall.assembly.support_motion[fixed], atol=1e-12)
         work = float((block_sums(wall.assembly, each.forces) * wall.assembly.support_motion).sum())
         assert work == pytest.approx(each.forces_at, rel=1e-6)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_block_on_a_base_of_which_any_part_settles(part: float):
+    """From half of the base on the moving part bears nothing at the least, and the wall may begin there."""
+    found = both(held_reactions(drystone.build_wall(data(DOWN, part=part))))
+    assert values(found) == pytest.approx(extremes(part), abs=STATED * WEIGHT)
+
+
+@pytest.mark.parametrize("friction", BRICKS)
+def test_bricks_that_lift_by_their_friction_end_at_the_extremes(friction: float):
+    found = both(held_reactions(bricks({"default": friction, "dilatancy": friction})))
+    assert values(found) == pytest.approx(BRICKS[friction], rel=STATED)
+
+
+def test_a_bracket_that_is_no_answer_says_why():
+    """Holds of one relaxation time leave too much undecided."""
+    found = held_reactions(bricks(1.0), hold_steps=1)
+    assert not isinstance(found, str)
+    gives, pushes = found
+    assert (gives.judgement.accepted, pushes.judgement.accepted) == (True, False)
+    assert "not converged" in pushes.sentence
+    assert "not converged" not in gives.sentence
 
 
 def test_rotation_of_the_support_about_its_edge():
