@@ -176,6 +176,7 @@ def test_a_path_without_an_end_has_no_plateau():
 
 
 def test_a_wall_that_falls_has_no_path():
+    assert "the wall falls, wherever its supports go" in str(reaction_paths(semicircle(0.2, 100, 0.3)))
     said = reaction_paths(drystone.build_wall(data(DOWN, loads={"gravity": [1, -1]})))
     assert isinstance(said, str)
     assert "No equilibrium within yield exists" in said
