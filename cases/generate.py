@@ -9,7 +9,19 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from cases import balanced, brittle, closed_forms, families, joint_strength, matera, passive, sources, tied, useful
+from cases import (
+    balanced,
+    brittle,
+    closed_forms,
+    families,
+    joint_strength,
+    matera,
+    passive,
+    sources,
+    surface_loads,
+    tied,
+    useful,
+)
 from cases.writing import case_files, write_files
 
 ROOT = Path(__file__).parent
@@ -18,7 +30,18 @@ ROOT = Path(__file__).parent
 def generated_files() -> dict[str, str]:
     """Text of every generated file by its path below `cases/`, without the table of sources."""
     files: dict[str, str] = {}
-    for module in (closed_forms, joint_strength, families, matera, useful, tied, passive, brittle, balanced):
+    for module in (
+        closed_forms,
+        joint_strength,
+        families,
+        matera,
+        useful,
+        tied,
+        passive,
+        brittle,
+        balanced,
+        surface_loads,
+    ):
         for recipe in module.recipes():
             files |= case_files(recipe.file, recipe.wall)
     return files

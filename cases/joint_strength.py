@@ -118,6 +118,32 @@ def bonded_wall() -> Iterator[Recipe]:
     yield recipe("bonded-wall-21", content, references, remarks)
 
 
+def _couplet() -> Iterator[Recipe]:
+    """Two units on a joint under a confining stress, sheared along it: tau = c + mu sigma, in N and mm."""
+    length, thickness, height, sigma, cohesion, friction = 100.0, 140.0, 50.0, 0.0536, 0.27, 0.94
+    area = length * thickness
+    shear = cohesion + friction * sigma
+    content = wall(
+        f"A couplet of {length:g} x {thickness:g} mm under {sigma} MPa, sheared along its joint",
+        units={"length": "mm", "force": "N"},
+        thickness=thickness,
+        friction=friction,
+        cohesion=cohesion,
+        blocks=[
+            {"id": "lower", "polygon": [(0, -height), (length, -height), (length, 0), (0, 0)], "fixed": True},
+            {"id": "upper", "polygon": [(0, 0), (length, 0), (length, height), (0, height)], "weight": 0.0},
+        ],
+        loads={
+            "dead": {"pressures": [{"from": (0, height), "to": (length, height), "uniform": sigma}]},
+            "live": {"points": [{"block": "upper", "at": (length / 2.0, 0.0), "force": (area, 0.0)}]},
+        },
+    )
+    source = f"{STATICS}: tau = c + mu sigma; the live load is 1 MPa on the joint"
+    references = exact(round(shear, 14), source, f"The joint shears at {shear:.6g} MPa.")
+    summary = "The multiplier is the shear strength in MPa; the force lies in the joint and turns nothing."
+    yield recipe("couplet-shears", content, references, Remarks(_BONDED, summary, ("strength",)))
+
+
 def _dilatant_wall() -> Iterator[Recipe]:
     """The 21-brick wall whose slips lift by the friction: associated flow, so that all methods have one multiplier."""
     exact = ("la", "la-associated", "fe")
@@ -270,5 +296,5 @@ def _without_dilatancy() -> list[Reference]:
 
 def recipes() -> Iterator[Recipe]:
     """Every case of joints with strength."""
-    for family in (_bonded_blocks, bonded_wall, _dilatant_wall, _crushing_piers, _crushing_walls):
+    for family in (_bonded_blocks, _couplet, bonded_wall, _dilatant_wall, _crushing_piers, _crushing_walls):
         yield from family()

@@ -18,10 +18,10 @@ from drystone.reactions import moving_blocks, one_alone, reactions
 from drystone.released_supports import ReleasedWall, released
 from drystone.walls import Wall
 from harness.engine.judge import answered
-from harness.engine.reaction_judge import judge_held, reaction_of
+from harness.engine.reaction_judge import judge_held, reaction_of, work_scale
 from harness.model.assembly import FloatArray
 from harness.model.bars import bar_tensions
-from harness.model.method import Finding, Method, check_takes, load_method
+from harness.model.method import Finding, Method, Status, check_takes, load_method
 from harness.model.result import Judgement, Result
 
 
@@ -108,7 +108,10 @@ def held_reactions(wall: Wall, **settings: Any) -> tuple[HeldReaction, HeldReact
         return f"Distinct elements do not hold the wall on supports at rest: {result.sentence}"
     beyond = bar_tensions(still, result)
     tensions = np.zeros(0) if beyond is None else beyond
-    begins = reaction_of(assembly, np.asarray(result.forces, dtype=float), tensions)
+    measured = reaction_of(assembly, np.asarray(result.forces, dtype=float), tensions)
+    # Forces hold to the tolerance of the method: within it a support that bears nothing is not one that bears a little.
+    near = method.tolerance * work_scale(assembly, measured)
+    begins = next((end for end in ends if abs(measured - end) <= near), measured)
     found: list[HeldReaction] = []
     for gives_way in (True, False):
         each = _bracket(wall, method, begins, gives_way, ends, settings)
@@ -149,7 +152,7 @@ def _bracket(
         own,
         motion,
         moving_blocks(assembly, motion),
-        _of_both(of_forces, said),
+        _of_both(of_forces, said, result),
     )
 
 
@@ -161,12 +164,16 @@ def _state(guided: ReleasedWall, result: Result) -> tuple[FloatArray, FloatArray
     return np.asarray(result.forces, dtype=float), tensions, np.asarray(result.mechanism, dtype=float)
 
 
-def _of_both(of_forces: Judgement, of_bracket: Judgement) -> Judgement:
-    """Accepted where the forces hold on the wall as drawn and the bracket on the wall with a guided support."""
+def _of_both(of_forces: Judgement, of_bracket: Judgement, bracket: Result) -> Judgement:
+    """Accepted where the forces hold on the wall as drawn and the bracket on the wall with a guided support.
+
+    A bracket that is no answer says why.
+    """
+    why = "" if bracket.status is Status.OK else f" The change of the reaction {bracket.sentence}."
     return of_forces.model_copy(
         update={
             "residuals": of_forces.residuals | {f"released_{k}": v for k, v in of_bracket.residuals.items()},
             "accepted": bool(of_forces.accepted and of_bracket.accepted),
-            "sentence": f"{of_forces.sentence} With the support released: {of_bracket.sentence}",
+            "sentence": f"{of_forces.sentence} With the support released: {of_bracket.sentence}{why}",
         }
     )

@@ -34,7 +34,11 @@ def semicircle(thickness: float, voussoirs: int, friction: float) -> drystone.Wa
     )
 
 
-def bricks(friction: float) -> drystone.Wall:
+BRICKS = {0.4: (1.2931034, 7.7068966), 0.65: (1.0544815, 7.9455185), 1.0: (0.75, 8.25)}
+"""Least and greatest reaction of `bricks` by their friction: associated flow, by a programme of other code."""
+
+
+def bricks(friction: Any) -> drystone.Wall:
     """The 21-brick wall of unit weight 1 and weight 9, whose support beyond x = 1.5 goes down by 1."""
     pattern = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3, "base": False}
     supports = [

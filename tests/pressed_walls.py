@@ -10,9 +10,6 @@ from harness.model.method import load_method
 from harness.model.result import Result
 from tests.walls import assembly
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
-"""The 21 bricks, of length one."""
-
 
 def found(name: str, wall: Assembly, **settings: Any) -> Result:
     """The answer of a method, which the judge accepts."""
@@ -21,7 +18,23 @@ def found(name: str, wall: Assembly, **settings: Any) -> Result:
     return result
 
 
-def arch(thickness: float, strength: float, friction: float = 1e3, **more: Any) -> Assembly:
+SEMICIRCLES = (
+    (0.15, None, 0.1493502),
+    (0.15, 100.0, 0.1434694),
+    (0.15, 20.0, 0.1184576),
+    (0.15, 5.0, 0.0247402),
+    (0.2, None, 0.2856458),
+    (0.2, 100.0, 0.2789968),
+    (0.2, 20.0, 0.2530433),
+    (0.2, 5.0, 0.1445606),
+)
+"""Thickness, compressive strength (None: joints do not crush) and multiplier of `arch`, by programmes of other code."""
+DIGITS = 5e-8
+"""Half a unit of the last digit of these multipliers."""
+
+
+def arch(thickness: float, strength: float | None, friction: float = 1e3, **more: Any) -> Assembly:
     """A semicircle of mean radius 1 of 20 voussoirs; by default they do not slide."""
     ring = {"type": "ring", "inner_radius": 1.0 - thickness / 2, "outer_radius": 1.0 + thickness / 2, "count": 20}
-    return assembly(ring, friction, unit_weight=1.0, compressive_strength=strength, **more)
+    crushing = {} if strength is None else {"compressive_strength": strength}
+    return assembly(ring, friction, unit_weight=1.0, **crushing, **more)

@@ -40,7 +40,7 @@ def judge_reaction(
     tensions = bars.prestress if tensions is None else tensions
     beyond_prestress = tensions - bars.prestress if len(bars) else None
     sense = -1.0 if greatest else 1.0
-    work = _work(assembly, reaction)
+    work = work_scale(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
     beyond = opening - (assembly.friction * abs(slip))[:, None]
     shown = reaction_of(assembly, forces, tensions)
@@ -81,7 +81,7 @@ def judge_plateau(
         tolerance: the largest residual that is acceptable.
     """
     sense = 1.0 if gives_way else -1.0
-    work = _work(assembly, reaction)
+    work = work_scale(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
     opening = opening - (assembly.dilatancy * abs(slip))[:, None]  # beyond the lift of the slip
     friction = float(((assembly.friction - assembly.dilatancy) * forces[:, :2].sum(axis=1) * abs(slip)).sum())
@@ -113,7 +113,7 @@ def judge_held(
         forces: (m, 3) contact forces [force]; tensions: (k,) of the ties and props, prestress included [force].
         tolerance: the largest residual that is acceptable.
     """
-    bars, work = assembly.bars, _work(assembly, reaction)
+    bars, work = assembly.bars, work_scale(assembly, reaction)
     low, high = extremes
     residuals = force_residuals(assembly, forces, 0.0, beyond=tensions - bars.prestress if len(bars) else None)
     residuals |= {
@@ -129,7 +129,7 @@ def reaction_of(assembly: Assembly, forces: FloatArray, tensions: FloatArray) ->
     return float(power(on_blocks, assembly.support_motion))
 
 
-def _work(assembly: Assembly, reaction: float) -> float:
+def work_scale(assembly: Assembly, reaction: float) -> float:
     """What the work of a reaction is compared with: the dead load on the prescribed motion, or the work if greater."""
     speed = fastest_vertex(assembly, assembly.support_motion) or 1.0
     return max(assembly.force_scale * speed, abs(reaction))

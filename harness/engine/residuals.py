@@ -372,7 +372,8 @@ def _mechanism_residuals(
         by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
         speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
         moved = float((magnitudes(assembly, assembly.dead) * speed).sum())
-        size = max(min(assembly.load_unit, moved / live_work), abs(multiplier))
+        unit = min(assembly.load_unit, moved / live_work) if moved > 0.0 else assembly.load_unit  # weightless blocks
+        size = max(unit, abs(multiplier))
         residuals["complementarity"] = idle_work / live_work / size
         residuals["virtual_work"] = abs(by_virtual_work - multiplier) / size
     return residuals

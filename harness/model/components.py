@@ -17,7 +17,7 @@ from harness.model.assembly import OF_BLOCKS, Assembly, BoolArray, FloatArray, I
 from harness.model.breakpoints import of_whole_wall
 from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.details import MOVING_FORCES, AnswerDetails
-from harness.model.errors import first_few
+from harness.model.errors import as_sentence, first_few
 from harness.model.groups import groups_of
 from harness.model.method import Answer, Finding, Status
 
@@ -242,8 +242,7 @@ def _moving_forces(assembly: Assembly, part: Component, answer: Answer) -> dict[
 
 def _sentence(parts: list[Component], answers: list[Answer], deciding: int) -> str:
     """What the deciding component's answer says, of which component it is, and what the others do."""
-    own = answers[deciding].sentence.rstrip(".")
-    said = f"{own[:1].upper()}{own[1:]}. The wall has {len(parts)} independent components"
+    said = f"{as_sentence(answers[deciding].sentence)} The wall has {len(parts)} independent components"
     if answers[deciding].status is not Status.OK:
         known = [k for k, answer in enumerate(answers) if answer.finding.has_multiplier]
         least = min(known, key=lambda k: _lower_end(answers[k]), default=None)

@@ -242,6 +242,12 @@ def uncounted(count: int, more: str, element: str) -> InputError:
     return fault
 
 
+def as_sentence(text: str) -> str:
+    """A text that begins with a capital letter and ends in one full stop, so that another sentence may follow."""
+    own = text.rstrip(".")
+    return f"{own[:1].upper()}{own[1:]}."
+
+
 def first_few(names: Sequence[str], most: int) -> str:
     """So many names in words, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""

@@ -11,6 +11,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import with_bar_forces, with_bars_as_joints
 from harness.model.components import analysed_apart
 from harness.model.deadline import best_so_far
+from harness.model.errors import as_sentence
 from harness.model.limit import accuracy, gross_power, least_told, strengthened
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
@@ -162,11 +163,10 @@ def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
 
 def _with_limit(answer: Answer, statics: Statics) -> Answer:
     """The answer of a wall at its limit; one that has no forces or no mechanism takes those of statics."""
-    own = answer.sentence.rstrip(".")
     if answer.multiplier is None:
-        said = f" The method's own sentence: {own}."
+        said = f" The method's own sentence: {answer.sentence.rstrip('.')}."
     else:
-        said = "" if answer.multiplier < 0.0 else f" {own[:1].upper()}{own[1:]}."
+        said = "" if answer.multiplier < 0.0 else f" {as_sentence(answer.sentence)}"
     return replace(
         answer,
         status=Status.OK,

@@ -152,7 +152,7 @@ def _with_state(found: _StateOfStrips, rounds: int) -> Answer:
     return replace(
         answer,
         sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state "
-        f"of their stress blocks, from {rounds} walls whose joints were set in to the middle of what they press.",
+        f"of their stress blocks, found in round {rounds} of setting joints in to the middle of what they press.",
         multiplier=state.multiplier,
         forces=state.forces,
         forces_multiplier=state.multiplier,

@@ -11,6 +11,7 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.deadline import best_so_far
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
+from harness.model.errors import as_sentence
 from harness.model.method import Answer, Finding, Status
 
 
@@ -39,8 +40,8 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
         rely = "Both are upper bounds: rely on the least residual multiplier (`la`)"
     said = _residual_in_words(residual, "cohesion and tensile strength")
     sentence = (
-        f"{plastic.sentence} That is with plastic strength of the joints; {said}. {rely}, because joints of mortar are "
-        "brittle."
+        f"{as_sentence(plastic.sentence)} That is with plastic strength of the joints; {said}. {rely}, because joints "
+        "of mortar are brittle."
     )
     return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
 
@@ -58,17 +59,17 @@ def between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
     if plastic.flow == "associated" or residual.status is not Status.OK:
         said = _residual_in_words(residual, "the strength of brittle joints")
         sentence = (
-            f"{plastic.sentence} That is as if all joints kept their strength, an upper estimate; {said}. Because "
-            f"{joints}, the multiplier of the wall lies between the least residual one (`la`) and this; `fe` follows "
-            "how they break."
+            f"{as_sentence(plastic.sentence)} That is as if all joints kept their strength, an upper estimate; {said}. "
+            f"Because {joints}, the multiplier of the wall lies between the least residual one (`la`) and this; `fe` "
+            "follows how they break."
         )
         return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
     kept = {name: value for name, value in residual.details.items() if name not in _OF_PROOFS}
     upper = f"{plastic.multiplier:.7g}" if plastic.multiplier is not None else f'the answer "{plastic.finding}"'
     sentence = (
-        f"{residual.sentence} That is with all brittle joints broken, a safe estimate; if all joints kept their "
-        f"strength, the least known would be {upper}. Because {joints}, the multiplier of the wall lies between this "
-        "and the maximum of `la-associated`; `fe` follows how they break."
+        f"{as_sentence(residual.sentence)} That is with all brittle joints broken, a safe estimate; if all joints kept "
+        f"their strength, the least known would be {upper}. Because {joints}, the multiplier of the wall lies between "
+        "this and the maximum of `la-associated`; `fe` follows how they break."
     )
     own = {"broken": np.flatnonzero(assembly.brittle).tolist(), "with_strength": _as_detail(plastic)}
     return replace(residual, sentence=sentence, details=kept | own)

@@ -16,7 +16,8 @@ from harness.model.method import Finding, Status, load_method
 from harness.model.result import Result, residual_of
 from methods.numerics.pressed_state import nearest_motion
 from methods.numerics.pressed_strips import pressed_shares, set_in
-from tests.pressed_walls import BOND, arch, found
+from tests.bonded_walls import BOND
+from tests.pressed_walls import SEMICIRCLES, arch, found
 from tests.walls import assembly, stack
 
 ACCURACY = 5e-3
@@ -45,19 +46,18 @@ def test_tension_widens_the_pressed_strip():
     assert residual.multiplier == pytest.approx(0.16, rel=ACCURACY)
 
 
-@pytest.mark.parametrize(("strength", "value"), [(100.0, 0.1434694), (20.0, 0.1184576)])
-def test_semicircle(strength: float, value: float):
-    assert found("de", arch(0.15, strength)).multiplier == pytest.approx(value, rel=ACCURACY)
-
-
-def test_semicircle_of_weak_joints():
-    assert of_weak_arch()[1].multiplier == pytest.approx(0.0247402, rel=ACCURACY)
+@pytest.mark.parametrize(("thickness", "strength", "value"), SEMICIRCLES)
+def test_semicircle(thickness: float, strength: float | None, value: float):
+    weak = (thickness, strength) == (0.15, 5.0)
+    result = of_weak_arch()[1] if weak else found("de", arch(thickness, strength))
+    assert result.multiplier == pytest.approx(value, rel=ACCURACY)
 
 
 def test_semicircle_falls_below_the_least_strength_and_stands_above():
-    for live in ({"loads": {}}, {}):
-        assert found("de", arch(0.15, 4.1, **live)).finding is Finding.FALLS
-    assert found("de", arch(0.15, 4.4, loads={})).finding is Finding.STANDS
+    for thickness, least in ((0.15, 4.1981), (0.2, 2.6466)):
+        for live in ({"loads": {}}, {}):
+            assert found("de", arch(thickness, 0.977 * least, **live)).finding is Finding.FALLS
+        assert found("de", arch(thickness, 1.05 * least, loads={})).finding is Finding.STANDS
 
 
 def test_wall_of_bricks_slides_and_crushes_where_fe_has_its_plateau():
@@ -65,6 +65,11 @@ def test_wall_of_bricks_slides_and_crushes_where_fe_has_its_plateau():
     assert result.bracket is not None
     assert result.bracket[0] <= 0.5515217391 <= result.bracket[1]
     assert result.multiplier == pytest.approx(0.5515217391, rel=ACCURACY)
+
+
+def test_full_dilatancy_leads_to_the_associated_maximum():
+    law = {"default": 0.65, "dilatancy": 0.65, "compressive_strength": 100.0}
+    assert found("de", assembly(BOND, law, unit_weight=1.0)).multiplier == pytest.approx(0.571732, rel=ACCURACY)
 
 
 def test_wall_that_presses_more_than_half_of_a_joint_has_no_answer_rather_than_a_wrong_one():

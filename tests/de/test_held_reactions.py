@@ -21,10 +21,10 @@ from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.settings import HoldSettings
 from tests.commands import drystone as command
-from tests.la.test_reaction_command import DOWN, WEIGHT, data
+from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
 from tests.la.test_released_supports import AROUND
 from tests.la.test_ties import bar, block
-from tests.moving_supports import bricks, semicircle, weight
+from tests.moving_supports import BRICKS, bricks, semicircle, weight
 
 STATED = 5e-3
 
@@ -59,6 +59,29 @@ def test_block_on_a_base_that_settles():
         assert work == pytest.approx(each.forces_at, rel=1e-6)
 
 
+@pytest.mark.parametrize("part", PARTS)
+def test_block_on_a_base_of_which_any_part_settles(part: float):
+    """From half of the base on the moving part bears nothing at the least, and the wall may begin there."""
+    found = both(held_reactions(drystone.build_wall(data(DOWN, part=part))))
+    assert values(found) == pytest.approx(extremes(part), abs=STATED * WEIGHT)
+
+
+@pytest.mark.parametrize("friction", BRICKS)
+def test_bricks_that_lift_by_their_friction_end_at_the_extremes(friction: float):
+    found = both(held_reactions(bricks({"default": friction, "dilatancy": friction})))
+    assert values(found) == pytest.approx(BRICKS[friction], rel=STATED)
+
+
+def test_a_bracket_that_is_no_answer_says_why():
+    """Holds of one relaxation time leave too much undecided."""
+    found = held_reactions(bricks(1.0), hold_steps=1)
+    assert not isinstance(found, str)
+    gives, pushes = found
+    assert (gives.judgement.accepted, pushes.judgement.accepted) == (True, False)
+    assert "not converged" in pushes.sentence
+    assert "not converged" not in gives.sentence
+
+
 def test_rotation_of_the_support_about_its_edge():
     """Moments about x = .3: 4 (.5 - .3) with the rest at x = .3, 2 (1 - .3) with it at x = 0."""
     found = both(held_reactions(drystone.build_wall(data(AROUND))))
@@ -73,6 +96,14 @@ def test_thrusts_of_an_arch_that_does_not_slide(thickness: float, thrusts: tuple
     wall = semicircle(thickness, 20, 50.0)
     found = both(held_reactions(wall))
     assert [value / weight(wall) for value in values(found)] == pytest.approx(thrusts, rel=STATED)
+
+
+@pytest.mark.slow
+def test_thrusts_of_an_arch_that_slides_at_its_springings():
+    """The greatest is half the friction. At friction .5 and .7 a hundred voussoirs push without a settled bracket."""
+    wall = semicircle(0.2, 100, 0.4)
+    found = both(held_reactions(wall))
+    assert [value / weight(wall) for value in values(found)] == pytest.approx([0.1540326, 0.2], rel=STATED)
 
 
 @pytest.mark.parametrize("friction", [0.4, 0.65, 1.0])
@@ -140,6 +171,7 @@ def test_tie_on_the_moving_support():
 
 
 def test_what_has_no_bracket_is_said():
+    assert "the wall falls, wherever its supports go" in str(held_reactions(semicircle(0.2, 100, 0.3)))
     together = drystone.build_wall(data({"group": "ground", "translation": [0, -1]}))
     assert held_reactions(together) == "Equilibrium leaves one reaction alone, 4: it does not depend on the flow."
     apart = drystone.build_wall(data(DOWN, {"blocks": ["left"], "translation": [0, -0.5]}))

@@ -17,9 +17,9 @@ from harness.model.result import Result, residual_of
 from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.settings import HoldSettings
+from tests.bonded_walls import ASSOCIATED, bonded
 from tests.walls import assembly, stack
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
 STATED = 5e-3
 
 
@@ -68,15 +68,20 @@ def test_block_glued_below_another_hangs_by_its_tensile_strength():
     [(0.05, 0.0, 0.6222349), (0.25, 0.0, 0.65 + 0.75 / 9.0), (0.05, 0.025, 0.6272891), (1.0, 0.5, 0.9833333)],
 )
 def test_wall_of_21_bricks_lies_between_residual_and_associated(cohesion: float, tension: float, associated: float):
-    result = found(assembly(BOND, 0.65, unit_weight=1.0, cohesion=cohesion, tensile_strength=tension))
+    result = found(bonded(cohesion, tension))
     residual = residual_of(result)
     assert result.bracket is not None
     assert residual is not None
     assert residual.bracket is not None
     assert residual.bracket[1] < result.bracket[0] <= associated * (1.0 + 1e-6)
-    fe = found(assembly(BOND, 0.65, unit_weight=1.0, cohesion=cohesion, tensile_strength=tension), "fe").multiplier
+    fe = found(bonded(cohesion, tension), "fe").multiplier
     # Statics leaves the way there open; both engines are within one percent of each other here.
     assert result.multiplier == pytest.approx(fe, rel=0.01)
+
+
+@pytest.mark.parametrize(("cohesion", "tension", "value"), ASSOCIATED)
+def test_wall_of_21_bricks_that_lifts_by_its_friction(cohesion: float, tension: float, value: float):
+    assert found(bonded(cohesion, tension, 0.65)).multiplier == pytest.approx(value, rel=STATED)
 
 
 def test_contacts_bear_tension_and_shear_to_their_strength_and_no_further():

@@ -91,6 +91,7 @@ def test_integral_of_housner_gives_the_least_pulses_of_the_note():
 def test_engine_loses_the_energy_of_an_impact(step: float):
     """pymunk keeps e of the angular velocity, to first order in the step: refused from 1 % of e^2 on."""
     assert pytest.approx(IMPACT) == HOUSNER
+    assert pytest.approx([2.686005, 0.942308], abs=5e-7) == [P, IMPACT]
     assert measured_impact(TimeSteps(time_step=step)) == pytest.approx(HOUSNER, rel=0.8 * step)
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness.engine.judge import judge
+from harness.engine.judge import answered, judge
 from harness.engine.residuals import block_sums, collapse_residuals
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status
+from harness.model.method import Answer, Finding, Status, load_method
 from harness.model.result import contact_states, result_of
+from tests.known_walls import box, of_blocks
 from tests.walls import assembly, stack
 
 WEIGHT = 20.0 * 0.3 * 0.2
@@ -187,3 +188,22 @@ def test_fall_is_proved_by_a_mechanism_that_gains_dead_work():
     assert "proves" in said.sentence
     answer.mechanism = -mechanism
     assert judge(wall, result_of(answer, wall, case="x", method="hand", family="hand"), 1e-9).accepted is False
+
+
+def test_weightless_block_that_is_pushed_alone_collapses_at_zero():
+    """No dead load moves, so that nothing dead measures what is small of a multiplier: the live load alone does."""
+    at_foot = {"live": {"points": [{"block": "light", "at": [0.5, 0.0], "force": [1.0, 0.0]}]}}
+    wall = of_blocks([box("light", 0.0, 0.0, weight=0.0), box("other", 5.0, 0.0)], 0.5, at_foot)
+    light, other = (int(np.flatnonzero(wall.block_b == wall.block_ids.index(name))[0]) for name in ("light", "other"))
+    mechanism = np.zeros((3, 3))
+    mechanism[wall.block_ids.index("light"), 0] = 1.0
+    forces = np.zeros((2, 3))
+    forces[other, :2] = 10.0
+    assert judged(wall, forces, 0.0, mechanism).accepted
+    assert judged(wall, forces, 1e-6, mechanism).accepted is False
+    forces[light, 2] = 1e-6 * (1.0 if wall.tangent[light, 0] * (wall.block_a[light] == 0) > 0.0 else -1.0)
+    assert judged(wall, forces, 1e-6, mechanism).accepted is False  # friction without a force that presses
+    for name in ("la", "la-associated", "fe"):
+        result, said = answered(load_method(name), wall)
+        assert said.accepted, said.sentence
+        assert result.multiplier == pytest.approx(0.0, abs=1e-12)

@@ -249,6 +249,32 @@ def test_answer_of_a_run_is_judged_from_its_file_as_in_the_run(loads: dict[str, 
     assert said(wall, again, 1e-8).outcome == "accepted"
 
 
+@pytest.mark.parametrize(
+    "further", [{}, {"cohesion": 2.0, "tensile_strength": 1.0}, {"compressive_strength": 200.0}], ids=str
+)
+def test_measured_answer_of_a_run_is_judged_from_its_file_as_in_the_run(further: dict[str, Any]):
+    """Its bracket, the forces measured with its motion, and the answer without strength are those of the run."""
+    wall = assembly(stack(2, 0.4, 1.0), 0.6, **further)
+    written = as_result(wall, state_of(wall, "de")).model_dump(mode="json")
+    assert said(wall, answer_from_file(written, wall, "a file"), 1e-6).outcome == "accepted"
+    lower, upper = written["bracket"]
+    above = written | {"bracket": [lower + 0.01, upper + 0.02]}
+    assert said(wall, answer_from_file(above, wall, "a file"), 1e-6).outcome == "rejected"
+    stopped = answer_from_file(written | {"status": "timeout"}, wall, "a file")
+    assert said(wall, stopped, 1e-6).outcome == "not_judged"
+
+
+@pytest.mark.parametrize("document", [{}, {"format": "result/1"}], ids=["a run", "result/1"])
+@pytest.mark.parametrize(
+    "wrong", [{"without_strength": 5}, {"displaced_state": {"places": [[1, 2]]}}, {"broken": "x"}], ids=str
+)
+def test_details_that_the_judge_cannot_read_are_named(document: dict[str, Any], wrong: dict[str, Any]):
+    wall = assembly(stack(2), 0.5)
+    data = document | {"multiplier": 0.5, "flow": "approximate", "details": wrong}
+    with pytest.raises(InputError, match=f"a file.*details.*{next(iter(wrong))}"):
+        answer_from_file(data, wall, "a file")
+
+
 def test_multiplier_is_printed_with_the_digits_that_its_error_allows(capsys: pytest.CaptureFixture[str]):
     wall = two_blocks(1.0)
     answer = sliding_state(wall, 0.5)

@@ -17,9 +17,10 @@ from harness.model.result import Result, residual_of, result_of
 from harness.model.wall import Wall
 from methods.numerics.pressed_state import exact_state, moving_rows
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
+from tests.bonded_walls import BOND
 from tests.cooked import KINDS, SLACK, TOLERANCE
 from tests.known_walls import Item
-from tests.pressed_walls import BOND, arch, found
+from tests.pressed_walls import DIGITS, SEMICIRCLES, arch, found
 from tests.walls import assembly, running_bond, stack, wall_data
 
 TAKE = ("fe", "la")
@@ -49,24 +50,19 @@ def test_tension_widens_the_pressed_strip(name: str):
     assert residual.multiplier == pytest.approx(0.16, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("thickness", "strength", "value"),
-    [
-        (0.15, 100.0, 0.1434694),
-        (0.15, 20.0, 0.1184576),
-        (0.15, 5.0, 0.0247402),
-        (0.2, 100.0, 0.2789968),
-        (0.2, 20.0, 0.2530433),
-        (0.2, 5.0, 0.1445606),
-    ],
-)
-def test_semicircle_that_does_not_slide_has_one_limit(thickness: float, strength: float, value: float):
+@pytest.mark.parametrize(("thickness", "strength", "value"), SEMICIRCLES)
+def test_semicircle_that_does_not_slide_has_one_limit(thickness: float, strength: float | None, value: float):
     """Without slips the flow is associated, so that the values of the cone programme hold."""
-    assert found("fe", arch(thickness, strength)).multiplier == pytest.approx(value, abs=5e-8)
+    assert found("fe", arch(thickness, strength)).multiplier == pytest.approx(value, abs=DIGITS)
 
 
-def test_least_known_state_of_a_semicircle_that_does_not_slide():
-    assert found("la", arch(0.15, 5.0)).multiplier == pytest.approx(0.0247402, abs=5e-8)
+SEARCHED = [pytest.param(*row, marks=[] if row[1] == 5.0 else pytest.mark.slow) for row in SEMICIRCLES]
+"""Each search of `la` takes ten seconds."""
+
+
+@pytest.mark.parametrize(("thickness", "strength", "value"), SEARCHED)
+def test_least_known_state_of_a_semicircle_that_does_not_slide(thickness: float, strength: float | None, value: float):
+    assert found("la", arch(thickness, strength)).multiplier == pytest.approx(value, abs=DIGITS)
 
 
 @pytest.mark.parametrize("name", TAKE)
@@ -118,7 +114,8 @@ def test_random_walls_lie_below_the_associated_maximum():
 def test_full_dilatancy_leads_to_the_associated_maximum():
     law = {"default": 0.65, "dilatancy": 0.65, "compressive_strength": 100.0}
     wall = assembly(BOND, law, unit_weight=1.0)
-    assert found("fe", wall).multiplier == pytest.approx(0.571732, abs=5e-7)
+    for name in TAKE:
+        assert found(name, wall).multiplier == pytest.approx(0.571732, abs=5e-7)
 
 
 @pytest.mark.parametrize("name", TAKE)
@@ -197,7 +194,7 @@ def test_state_is_exact_at_once_where_the_joints_that_move_are_known():
         assert start.mechanism is not None
         state = exact_state(wall, at_ends(share, start.forces), moving_rows(set_in(wall, share), start.mechanism))
     assert state is not None
-    assert state.multiplier == pytest.approx(0.1445606, abs=5e-8)
+    assert state.multiplier == pytest.approx(0.1445606, abs=DIGITS)
 
 
 CHANGES = ("forces", "multiplier", "mechanism", "weaker", "set in", "lifted", "more friction", "less")

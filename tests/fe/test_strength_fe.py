@@ -20,9 +20,9 @@ from methods.fe.answers import joint_states
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK
 from methods.springs.model.wall_model import WallModel, build_model
+from tests.bonded_walls import ASSOCIATED, BOND, PRINTED, bonded
 from tests.walls import assembly, running_bond, stack
 
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
 ROUND_OFF = 1e-9
 
 
@@ -62,26 +62,20 @@ def test_neither_gap_points_nor_stiffness_move_the_limit_of_a_block(settings: di
     assert found(topples, **settings).multiplier == pytest.approx(0.22, rel=ROUND_OFF)
 
 
-@pytest.mark.parametrize(
-    ("cohesion", "tension", "associated"),
-    [
-        (0.05, 0.0, 0.6222349),
-        (0.25, 0.0, 0.7333333),
-        (0.5, 0.0, 0.65 + 1.5 / 9.0),
-        (1.0, 0.0, 0.9707455),
-        (0.05, 0.025, 0.6272891),
-        (0.25, 0.125, 0.7333333),
-        (1.0, 0.5, 0.9833333),
-    ],
-)
+@pytest.mark.parametrize(("cohesion", "tension", "associated"), ASSOCIATED[1:])
 def test_wall_of_21_bricks_lies_between_residual_and_associated(cohesion: float, tension: float, associated: float):
-    result = found(assembly(BOND, 0.65, unit_weight=1.0, cohesion=cohesion, tensile_strength=tension))
+    result = found(bonded(cohesion, tension))
     residual = residual_of(result)
     assert residual is not None
     assert residual.multiplier is not None
     assert result.multiplier is not None
     assert residual.multiplier == found(assembly(BOND, 0.65, unit_weight=1.0)).multiplier
-    assert residual.multiplier < result.multiplier <= associated * (1.0 + 1e-7)  # seven digits recorded
+    assert residual.multiplier < result.multiplier <= associated * (1.0 + PRINTED)
+
+
+@pytest.mark.parametrize(("cohesion", "tension", "value"), ASSOCIATED)
+def test_wall_of_21_bricks_that_lifts_by_its_friction(cohesion: float, tension: float, value: float):
+    assert found(bonded(cohesion, tension, 0.65)).multiplier == pytest.approx(value, rel=PRINTED)
 
 
 def test_base_that_slides_as_a_whole_bears_its_cohesion():

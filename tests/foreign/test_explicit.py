@@ -55,7 +55,7 @@ def test_what_run_prints_is_read_back_by_judge_and_a_strict_result_refuses_other
     wall = assembly(stack(1), 0.4)
     data = {"case": "x", "multiplier": 0.4, "forces": [[1.0, 2.0, 3.0]], "details": {"live_forces": [[1, 2, 3]]}}
     answer = answer_from_file(data, wall, "a file")
-    assert answer.details["live_forces"] == [(1.0, 2.0, 3.0)]
+    assert answer.details["live_forces"] == [[1.0, 2.0, 3.0]]
     with pytest.raises(Exception, match='unknown field "case"'):
         answer_of(data | {"format": "result/1"}, wall, "a file")
     with pytest.raises(Exception, match="it has no format"):

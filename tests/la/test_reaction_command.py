@@ -1,6 +1,7 @@
 """Settlements in a wall file, and `drystone reaction`: least and greatest reaction, judged by virtual work.
 
-A block of width 1 on [0, a] that rests and [a, 1] that settles: W (1/2 - a)/(1 - a) to W (Portioli and Cascini 2016).
+A block of width 1 on [0, a] that rests and [a, 1] that settles: W (1/2 - a)/(1 - a) to W, and from a = 1/2 on 0 to
+W / (2 a) (Portioli and Cascini 2016).
 """
 
 from __future__ import annotations
@@ -28,13 +29,22 @@ DOWN = {"blocks": ["right"], "translation": [0, -1]}
 WEIGHT = 20.0 * 0.2
 
 
-def data(*settlements: dict[str, Any], **more: Any) -> dict[str, Any]:
+PARTS = (0.1, 0.3, 0.45, 0.5, 0.6, 0.8)
+"""Widths of the part of the base that rests; from 1/2 on the block stands on it alone."""
+
+
+def extremes(part: float) -> list[float]:
+    """Least and greatest reaction of the part that settles, by moments about the ends of both parts."""
+    return [WEIGHT * max(0.0, (0.5 - part) / (1.0 - part)), WEIGHT * min(1.0, 0.5 / part)]
+
+
+def data(*settlements: dict[str, Any], part: float = 0.3, **more: Any) -> dict[str, Any]:
     def support(name: str, left: float, right: float) -> dict[str, Any]:
         polygon = [[left, -1], [right, -1], [right, 0], [left, 0]]
         return {"id": name, "polygon": polygon, "fixed": True, "groups": ["ground"]}
 
     block = {"id": "block", "polygon": [[0, 0], [1, 0], [1, 0.2], [0, 0.2]], "groups": ["free"]}
-    blocks = [support("left", 0.0, 0.3), support("right", 0.3, 1.0), block]
+    blocks = [support("left", 0.0, part), support("right", part, 1.0), block]
     wall = {"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": blocks, "settlements": list(settlements)}
     return wall | more
 
@@ -43,12 +53,13 @@ def built(*settlements: dict[str, Any], **more: Any) -> Assembly:
     return build(Wall.model_validate(data(*settlements, **more))).assembly
 
 
-def test_block_on_a_base_that_settles():
-    found = reactions(drystone.build_wall(data(DOWN)))
+@pytest.mark.parametrize("part", PARTS)
+def test_block_on_a_base_that_settles(part: float):
+    found = reactions(drystone.build_wall(data(DOWN, part=part)))
     assert not isinstance(found, str)
-    assert [each.value for each in found] == pytest.approx([2.0 / 7.0 * WEIGHT, WEIGHT], rel=1e-9)
+    assert [each.value for each in found] == pytest.approx(extremes(part), abs=1e-9)
     assert all(each.judgement.accepted for each in found)
-    assert all(each.moving == ("block",) for each in found)
+    assert [each.moving for each in found] == [("block",) if part < 0.5 else (), ("block",)]
 
 
 def test_command_prints_both_with_their_mechanisms(tmp_path: Path):

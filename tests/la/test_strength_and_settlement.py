@@ -23,14 +23,11 @@ from methods.la.core.problem import make_problem
 from methods.la.core.programmes import StaticProgramme, StaticSolution
 from methods.la.core.reaction import ExtremeReaction, extreme_reaction
 from methods.la.interior.associated import solve_associated, solve_with_cvxpy
+from tests.bonded_walls import ASSOCIATED, BOND, PRINTED
 from tests.walls import assembly, stack, wall_data
 
 EXACT = 1e-9
 """Relative accuracy of a multiplier of the associated programme, as its method declares."""
-PRINTED = 1e-7
-"""Of values that are known to seven digits."""
-
-BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}
 
 
 def with_strength(wall: Assembly, cohesion: float, tension: float = 0.0) -> Assembly:
@@ -66,18 +63,7 @@ def test_block_with_strength(wall: Assembly, cohesion: float, tension: float, va
     assert greatest(with_strength(wall, cohesion, tension), solver) == pytest.approx(value, rel=EXACT)
 
 
-@pytest.mark.parametrize(
-    ("cohesion", "tension", "value"),
-    [
-        (0.0, 0.0, 0.5844609),
-        (0.05, 0.0, 0.6222349),
-        (0.25, 0.0, 0.7333333),
-        (1.0, 0.0, 0.9707455),
-        (0.05, 0.025, 0.6272891),
-        (0.25, 0.125, 0.7333333),
-        (1.0, 0.5, 0.9833333),
-    ],
-)
+@pytest.mark.parametrize(("cohesion", "tension", "value"), ASSOCIATED)
 @pytest.mark.parametrize("solver", ["highs", "interior"])
 def test_wall_of_21_bricks_with_strength(cohesion: float, tension: float, value: float, solver: str):
     wall = assembly(BOND, 0.65, unit_weight=1.0)

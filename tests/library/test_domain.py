@@ -50,12 +50,14 @@ def test_block_pushed_at_top_and_foot_overturns_or_slides():
     assert len(found.unbounded) == 0
 
 
-def test_weights_of_a_block_bound_a_cone_of_its_friction():
-    # |x| <= mu (1 + y), y downwards: nothing is borne upwards beyond the weight, everything downwards.
-    found = drystone.domain(drystone.new_wall("stack", count=1, width=1.0, height=0.2, friction=0.3))
+@pytest.mark.parametrize("height", [0.2, 5.0], ids=["slides", "overturns"])
+def test_weights_of_a_block_bound_a_cone(height: float):
+    """|x| <= (1 + y) min(mu, b / h), y downwards: nothing is borne upwards beyond the weight, everything downwards."""
+    found = drystone.domain(drystone.new_wall("stack", count=1, width=1.0, height=height, friction=0.3))
+    limit = min(0.3, 1.0 / height)
     np.testing.assert_allclose(found.vertices, [(0.0, -1.0)], atol=1e-9)
     slope = found.unbounded[:, 0] / found.unbounded[:, 1]
-    np.testing.assert_allclose(sorted(slope), [-0.3, 0.3], rtol=1e-6)
+    np.testing.assert_allclose(sorted(slope), [-limit, limit], rtol=1e-6)
     assert "unbounded" in found.sentence
 
 

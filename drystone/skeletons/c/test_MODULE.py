@@ -38,7 +38,7 @@ def test_column_topples_at_width_over_height(tmp_path: Path) -> None:
 
 
 def test_a_wall_outside_its_scope_is_refused(tmp_path: Path) -> None:
-    result = json.loads(drystone("run", "NAME", "wall-21", "--json", code=1))
+    result = json.loads(drystone("run", "NAME", "wall-21", "--json", code=2))
     assert result["status"] == "refused"
 
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from harness.model.answer_check import AnswerFault, checked
 from harness.model.assembly import Assembly
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
 from harness.model.errors import InputError
@@ -23,7 +24,8 @@ Triples = list[tuple[Finite, Finite, Finite]]
 _OF_INTERFACES = ("forces", "live_forces", "dead_forces", MOVING_FORCES)
 OF_BLOCKS = ("mechanism", "dilatant_mechanism")
 _OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
-_OF_BRITTLE_JOINTS = ("broken", "breaking")
+_FOR_THE_JUDGE = ("without_strength", "with_strength", "broken", "breaking", "displaced_state")
+"""Details that the judge reads and for which `result/1` has no field: no program takes what they are about."""
 _IN_DETAILS = (*_OF_INTERFACES[1:], *_OF_BARS, "dilatant_mechanism", "lower_bound", "certificate")
 """Fields that an `Answer` holds among its details."""
 
@@ -126,20 +128,31 @@ def answer_from_file(data: Any, assembly: Assembly, source: str) -> Answer:
     or under those in its `details`; all else in it is passed over.
 
     Raises:
-        InputError: as of `answer_of`.
+        InputError: as of `answer_of`, or details that the judge cannot read.
     """
     if not isinstance(data, dict) or "format" in data:
-        return answer_of(data, assembly, source)
+        return _readable(answer_of(data, assembly, source), assembly, source)
     within = data.get("details")
     details = within if isinstance(within, dict) else {}
-    names = ("finding", "multiplier", "forces", "forces_multiplier", "mechanism", "flow")
+    names = ("finding", "multiplier", "bracket", "forces", "forces_multiplier", "mechanism", "flow")
     taken = {name: data[name] for name in names if name in data}
-    proofs = ("live_forces", "dead_forces", "dilatant_mechanism", *(_OF_BARS if len(assembly.bars) else ()))
+    if data.get("status", "ok") != "ok":  # how a run ended, of which `result/1` knows fewer ways
+        taken["status"] = "not_converged"
+    proofs = ("live_forces", "dead_forces", MOVING_FORCES, "dilatant_mechanism")
+    proofs = (*proofs, *(_OF_BARS if len(assembly.bars) else ()))
     taken |= {name: listed for name in proofs if (listed := data.get(name, details.get(name))) is not None}
-    if assembly.breaks:  # no program takes brittle joints, so `result/1` has no fields of its own for them
-        joints = {name: data.get(name, details.get(name)) for name in _OF_BRITTLE_JOINTS}
-        taken["details"] = {name: listed for name, listed in joints.items() if listed is not None}
-    return answer_of({"format": "result/1", "sentence": "An answer from a file."} | taken, assembly, source)
+    others = {name: data.get(name, details.get(name)) for name in _FOR_THE_JUDGE}
+    taken["details"] = {name: found for name, found in others.items() if found is not None}
+    document = {"format": "result/1", "sentence": "An answer from a file."} | taken
+    return _readable(answer_of(document, assembly, source), assembly, source)
+
+
+def _readable(answer: Answer, assembly: Assembly, source: str) -> Answer:
+    """The answer, if the judge can read its details."""
+    try:
+        return checked(answer, assembly)
+    except AnswerFault as fault:
+        raise InputError(fault.problem, "Give what `drystone run --json --fields` writes", "details", source) from None
 
 
 def _default_sentence(found: ResultDocument) -> str:
