@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.deadline import Deadline
+from methods.numerics.silent_highs import SilentHighs
 from methods.numerics.vertex import StandardForm, Vertex
 
 INFINITY = highspy.kHighsInf
@@ -30,15 +31,9 @@ class Programme:
         row: tuple[FloatArray, FloatArray],
     ) -> None:
         self.deadline = Deadline.of_run()
-        self.highs: Any = highspy.Highs()
-        for option, value in (
-            ("output_flag", False),
-            ("threads", 1),
-            ("random_seed", 0),
-            ("primal_feasibility_tolerance", 1e-9),
-            ("dual_feasibility_tolerance", 1e-9),
-        ):
-            self.highs.setOptionValue(option, value)
+        self.highs: Any = SilentHighs(
+            threads=1, random_seed=0, primal_feasibility_tolerance=1e-9, dual_feasibility_tolerance=1e-9
+        )
         self._matrix: sp.csc_matrix = sp.csc_matrix(matrix)
         self._cost = np.array(cost, dtype=float)
         self._column = (np.array(column[0], dtype=float), np.array(column[1], dtype=float))

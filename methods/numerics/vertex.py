@@ -20,6 +20,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from methods.numerics.failures import NumericalFailure, SingularMatrix, sparse_lu
+from methods.numerics.silent_highs import SilentHighs
 
 
 @dataclass(frozen=True)
@@ -205,17 +206,14 @@ class StandardForm:
         primal = _factor(at.outside, tolerances.magnified) if at.primal > tolerances.accurate else 1.0
         dual = _factor(at.wrong, tolerances.magnified) if at.dual_violation > tolerances.accurate else 1.0
         basic = at.status == BASIC
-        highs: Any = highspy.Highs()
-        for option, setting in (
-            ("output_flag", False),
-            ("threads", 1),
-            ("presolve", "off"),
-            ("solver", "simplex"),
-            ("primal_feasibility_tolerance", 1e-9),
-            ("dual_feasibility_tolerance", 1e-9),
-            ("small_matrix_value", 1e-12),
-        ):
-            highs.setOptionValue(option, setting)
+        highs: Any = SilentHighs(
+            threads=1,
+            presolve="off",
+            solver="simplex",
+            primal_feasibility_tolerance=1e-9,
+            dual_feasibility_tolerance=1e-9,
+            small_matrix_value=1e-12,
+        )
         shifted = highspy.HighsLp()
         shifted.num_row_, shifted.num_col_ = self._matrix.shape
         shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -tolerances.cut_off, tolerances.cut_off))

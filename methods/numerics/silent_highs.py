@@ -1,0 +1,28 @@
+"""HiGHS without a word on the terminal, whichever release is installed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import highspy
+
+
+class SilentHighs(highspy.Highs):  # type: ignore[misc]
+    """HiGHS that writes nothing to standard output, which belongs to the documents of the commands.
+
+    HiGHS 1.16 prints its name and licence when callbacks are enabled, which its own constructor does before any option
+    can be set; so output is switched off first.
+
+    Args:
+        options: values by their names in HiGHS.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__()
+        for name, value in options.items():
+            self.setOptionValue(name, value)
+
+    def enableCallbacks(self) -> None:
+        """Enable callbacks, silently."""
+        self.setOptionValue("output_flag", False)
+        super().enableCallbacks()
