@@ -22,6 +22,7 @@ from types import ModuleType
 from typing import Any
 
 from harness.engine import preload, worker
+from harness.engine.left_over import end_descendants
 from harness.engine.resource_use import resource_use
 from harness.engine.run import Limits, TimedResult, measured_result
 from harness.engine.threads import pin
@@ -274,7 +275,8 @@ class Child:
         return run.measured({"answer": answer} | cost)
 
     def _kill(self) -> None:
-        """End the whole process group; the child has made itself its leader."""
+        """End all that the child has started, and the whole process group; the child has made itself its leader."""
+        end_descendants(self._process.pid)
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
         with contextlib.suppress(ProcessLookupError, ValueError):

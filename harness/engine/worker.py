@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.left_over import adopt_orphans, end_left_over
 from harness.engine.resource_use import cpu_seconds
 from harness.model.answer_check import AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
@@ -104,6 +105,7 @@ def serve(engine: connection.Connection, folder: str) -> None:
     """
     os.setsid()
     _die_with_engine()
+    adopt_orphans()
     os.chdir(folder)  # what a library drops in the working directory goes with the run
     _send_output_to(Path(folder) / "output.txt")
     _give_away_descriptors(engine)
@@ -193,18 +195,22 @@ def _record(task: Task, method: Method | None, failure: Answer | None) -> dict[s
             Status.CRASHED, f"The method raised {type(error).__name__}: {visible(str(error))[:_MOST_SAID]}"
         )
     kept = [] if method is None else method.processes_kept()
+    left = end_left_over(kept)
     cpu, wall = cpu_seconds(kept) - before, time.perf_counter() - started
     np.seterr(**errors)
     _limit_address_space(None)
     _limit(resource.RLIMIT_FSIZE, None)
+    peak = _peak_memory(kept, most_before)
+    if peak > task.memory_bytes:  # between two looks of the engine
+        answer = _failure(Status.OUT_OF_MEMORY, task.stopped(Status.OUT_OF_MEMORY))
     return {
         "answer": vars(answer),
         **about,
         "settings": settings,
         "cpu_seconds": cpu,
         "wall_seconds": wall,
-        "peak_memory_bytes": _peak_memory(kept, most_before),
-        "reusable": not _has_children(kept) and threading.active_count() <= threads,
+        "peak_memory_bytes": peak,
+        "reusable": not left and threading.active_count() <= threads,
     }
 
 
@@ -254,16 +260,6 @@ def _cleared(folder: Path) -> bool:
     except (OSError, ValueError):  # its output was closed, or its folder is gone
         return False
     return True
-
-
-def _has_children(kept: Sequence[int]) -> bool:
-    """Whether processes are left that a run has started, but those kept; such a worker makes no further run."""
-    try:
-        tasks = Path("/proc/self/task").iterdir()
-        found = {int(pid) for task in tasks for pid in (task / "children").read_text(encoding="ascii").split()}
-    except OSError:
-        return False
-    return not found <= set(kept)
 
 
 def _forget_peak_memory(kept: Sequence[int]) -> int:

@@ -49,6 +49,28 @@ def act(what: str, wall: dict[str, Any], words: list[str]) -> Any:
         case "leave a child":
             if os.fork() == 0:
                 time.sleep(3600)
+        case "begin a session":
+            if os.fork() == 0:
+                os.setsid()
+                if os.fork() == 0:
+                    time.sleep(3600)
+                os._exit(0)
+        case "begin a session and hang":
+            if os.fork() == 0:
+                os.setsid()
+                time.sleep(3600)
+            time.sleep(3600)
+        case "burn elsewhere":
+            ours, theirs = os.pipe()
+            if os.fork() == 0:
+                os.setsid()
+                act("burn", wall, words)
+                os.write(theirs, b"burned")
+                time.sleep(3600)
+            os.read(ours, 6)
+        case "eat and go":
+            hoard = bytearray(400 * MEGABYTE)
+            hoard[::4096] = b"x" * len(hoard[::4096])
         case "burn":
             until = time.process_time() + 0.5
             while time.process_time() < until:
@@ -96,6 +118,10 @@ def main() -> None:
             if what == "leave":
                 sys.exit(0)
             told = json.dumps(act(what, request["wall"], sys.argv[2:]))
+            if what == "latin":
+                sys.stdout.buffer.write(told.encode().replace(b"format", b"f\xf6rmat") + b"\n")
+                sys.stdout.flush()
+                continue
             print("\n".join([told] * (2 if what == "twice" else 1)), flush=True)
         return
     what, wall, result, *words = sys.argv[1:]
@@ -114,6 +140,6 @@ def describe(settings: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    acts = ("words", "chatter", "leave", "twice", "exit", "hang", "burn", "typing mistake")
+    acts = ("words", "chatter", "leave", "twice", "exit", "hang", "burn", "typing mistake", "latin", "eat and go")
     describe({"does": {"type": "string", "default": "words", "enum": acts}})
     main()

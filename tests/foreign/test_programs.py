@@ -23,6 +23,7 @@ PROGRAM = str(Path(__file__).with_name("programs.py"))
 CERTIFICATE = Path(__file__).parents[2] / "cases" / "slide" / "certificate.json"
 ACTS = (
     *("answer", "exit", "abort", "nothing", "hang", "leave a child", "burn", "eat", "eat on", "multiplier", "nan"),
+    *("begin a session", "begin a session and hang", "burn elsewhere"),
     *("wrong sign", "too few", "typing mistake", "text", "not converged", "words", "certificate", "forged"),
 )
 
@@ -101,12 +102,18 @@ def test_a_program_that_hangs_is_stopped_and_ended():
     assert not [child for child in left if PROGRAM in child.cmdline()]
 
 
-def test_what_a_program_leaves_running_ends_with_its_run():
-    def running() -> set[int]:
-        return {p.pid for p in psutil.process_iter(["cmdline"]) if "leave a child" in (p.info["cmdline"] or [])}
+@pytest.mark.parametrize(
+    ("what", "status"),
+    [("leave a child", "ok"), ("begin a session", "ok"), ("begin a session and hang", "timeout")],
+)
+def test_what_a_program_leaves_running_ends_with_its_run(what: str, status: str):
+    """A process in a session of its own, and one whose parent has ended, are of no group that could be ended."""
 
-    (found,) = ran("leave-a-child")
-    assert found.status == "ok"
+    def running() -> set[int]:
+        return {p.pid for p in psutil.process_iter(["cmdline"]) if what in (p.info["cmdline"] or [])}
+
+    (found,) = ran(what.replace(" ", "-"), seconds=2.0)
+    assert found.status == status
     until = time.monotonic() + 10.0
     while running() and time.monotonic() < until:
         time.sleep(0.05)
@@ -119,6 +126,18 @@ def test_its_processor_time_and_memory_are_those_of_the_run():
     assert ate.peak_memory_bytes is not None
     assert burned.cpu_seconds >= 0.45
     assert ate.peak_memory_bytes >= 390 * MEGABYTE
+
+
+def test_processor_time_of_what_it_left_is_that_of_the_run():
+    (found,) = ran("burn-elsewhere")
+    assert found.cpu_seconds is not None
+    assert found.cpu_seconds >= 0.45
+
+
+def test_memory_between_two_looks_counts():
+    """Processes that a worker started are looked at twice a second; this one needs less for all that it does."""
+    (found,) = ran("lines", mebibytes=300, does="eat and go")
+    assert found.status == "out_of_memory"
 
 
 def test_a_program_that_eats_memory_is_stopped_at_the_limit():
@@ -175,6 +194,7 @@ def test_one_process_answers_many_walls_by_lines():
         ("leave", "exit code 0"),
         ("chatter", 'wrote "I am thinking"'),
         ("typing mistake", 'Did you mean "multiplier"'),
+        ("latin", "no UTF-8 text: byte 0xf6"),
     ],
 )
 def test_a_line_that_is_no_result_is_said_of_the_program(does: str, words: str):

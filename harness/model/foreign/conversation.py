@@ -15,7 +15,7 @@ from harness.model.answer_check import AnswerFault
 from harness.model.errors import InputError, visible
 from harness.model.foreign.register import Program
 from harness.model.foreign.spawning import whole_address_space
-from harness.model.json_text import LARGEST_FILE, json_of
+from harness.model.json_text import LARGEST_FILE, json_of, text_of
 
 
 class Conversation:
@@ -81,7 +81,7 @@ class Conversation:
             if not line:
                 raise AnswerFault(self._no_line(process))
             try:
-                return json_of(line.decode("utf-8", "replace"), "its result")
+                return json_of(text_of(line, "its result"), "its result")
             except InputError as error:
                 said = f'The program wrote "{_shown(line)}" where one line of JSON was due'
                 raise AnswerFault(f"{said}: {error}") from None

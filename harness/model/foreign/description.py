@@ -81,6 +81,8 @@ class Description(About):
         for name, schema in self.settings.items():
             if not name.isidentifier() or name.startswith(("_", "model_")):
                 raise ValueError(f'"{name}" is no name of a setting: give letters, digits and underscores')
+            if hasattr(Settings, name):
+                raise ValueError(f'"{name}" is no name of a setting: pydantic has it for itself')
             if not isinstance(schema.default, KINDS[schema.type]) and schema.type != "number":
                 raise ValueError(f'the default of the setting "{name}" is no {schema.type}')
         return self

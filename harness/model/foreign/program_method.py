@@ -25,7 +25,7 @@ from harness.model.foreign.explicit import explicit_document, write_arrays
 from harness.model.foreign.register import Program, program_named
 from harness.model.foreign.result_document import answer_of
 from harness.model.foreign.spawning import output_of, whole_address_space
-from harness.model.json_text import json_of, read_json
+from harness.model.json_text import json_of, read_json, text_of
 from harness.model.method import Answer, Method, Settings
 from harness.model.reading import validate
 from harness.model.run_context import run_folder
@@ -93,7 +93,7 @@ class ProgramMethod(Method):
             try:
                 return answer_of(data, assembly, "its result")
             except InputError as error:
-                raise AnswerFault(f"{error}") from None
+                raise AnswerFault(str(error).replace("\n  ", ": ", 1).replace("\n  ", "; ")) from None
 
     def _asked(self, assembly: Assembly, settings: dict[str, Any], folder: Path) -> Any:
         """The result that a program which answers by lines gives."""
@@ -172,7 +172,7 @@ def description_of(program: Program) -> Description:
     """What a program prints of itself when it is given `--describe`; asked once in a process.
 
     Raises:
-        InputError: it cannot be started, fails, or prints no description, or that of another name.
+        InputError: it cannot be started, fails, or prints no description.
     """
     words = [*program.bare, "--describe"]
     source = " ".join(words)
@@ -191,9 +191,7 @@ def description_of(program: Program) -> Description:
         lines = errors.decode("utf-8", "replace").strip().splitlines()
         last = f" ({visible(lines[-1])[:200]})" if lines else ""
         raise InputError(f"it ends with exit code {code}{last}", remedy, source=source)
-    text = said.decode("utf-8", "replace")
-    found = validate(Description, json_of(text, source), source)
-    return found
+    return validate(Description, json_of(text_of(said, source), source), source)
 
 
 @functools.cache

@@ -26,6 +26,7 @@ OF_BLOCKS = ("mechanism", "dilatant_mechanism")
 _OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
 _FOR_THE_JUDGE = ("without_strength", "with_strength", "broken", "breaking", "displaced_state")
 """Details that the judge reads and for which `result/1` has no field: no program takes what they are about."""
+_VERBS = (Finding.COLLAPSES, Finding.STANDS, Finding.FALLS)
 _IN_DETAILS = (*_OF_INTERFACES[1:], *_OF_BARS, "dilatant_mechanism", "lower_bound", "certificate")
 """Fields that an `Answer` holds among its details."""
 
@@ -159,4 +160,5 @@ def _default_sentence(found: ResultDocument) -> str:
     if found.status != "ok":
         return f"The program answers {found.status.replace('_', ' ')} and gives no reason."
     value = f" at {found.multiplier:.7g}" if found.multiplier is not None else ""
-    return f"The wall {found.finding}{value}, says the program."
+    finds = found.finding if found.finding in _VERBS else f"is {found.finding}"
+    return f"The wall {finds}{value}, says the program."
