@@ -11,6 +11,7 @@ from harness.model.comparison import CaseResults, Gate
 from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
+from harness.model.proof import is_collapse_state
 from harness.model.result import Comparison, Result, Verdict
 
 _BOUND_TOLERANCE = 1e-6
@@ -103,6 +104,30 @@ def _is_the_least_known(result: Result) -> bool:
     return result.traits.seeks_least and result.is_main and not AnswerDetails(result.details).stopped_by_limit
 
 
+def _bounds_above(result: Result) -> bool:
+    """Whether its multiplier bounds all others: by its mechanism, not by what the method says of itself alone."""
+    return result.traits.bounds_above and (result.flow == "associated" or not result.finding.has_multiplier)
+
+
+def _bounds_below_states(results: CaseResults, unit: float) -> list[Gate]:
+    """The gates of lower bounds that methods say they found in floating point: no collapse state lies below."""
+    states = [item for item in results.results if is_collapse_state(item)]
+    least = min(states, key=lambda item: item.multiplier or 0.0, default=None)
+    if least is None or least.multiplier is None:
+        return []
+    said = [(item.method, AnswerDetails(item.details).lower_bound or 0.0) for item in results.results]
+    return [
+        Gate(
+            name=f"{method}-bounds-below",
+            statement="no collapse state lies below the lower bound that a method says it found",
+            passed=bound <= least.multiplier + _BOUND_TOLERANCE * max(unit, abs(bound)),
+            sentence=f"{method} bounds at {bound:.9g}, {least.method} {least.multiplier:.9g}",
+        )
+        for method, bound in sorted(said)
+        if bound > 0.0
+    ]
+
+
 def theory_gates(results: CaseResults) -> list[Gate]:
     """The statements of limit analysis that tie the methods' answers on one case together.
 
@@ -133,11 +158,12 @@ def theory_gates(results: CaseResults) -> list[Gate]:
             )
         )
 
-    bounding = next((usable[name] for name in sorted(usable) if usable[name].traits.bounds_above), None)
-    least = next((item for item in usable.values() if _is_the_least_known(item)), None)
+    bounding = next((usable[name] for name in sorted(usable) if _bounds_above(usable[name])), None)
+    seeking = [item for item in usable.values() if _is_the_least_known(item)]
+    least = seeking[0] if seeking else None
     for method in sorted(usable):
         result = usable[method]
-        if result.traits.bounds_above or DisplacedState.of(result.details) is not None:
+        if _bounds_above(result) or DisplacedState.of(result.details) is not None:
             continue
         if result.traits.brackets:
             statement = "a held state is in equilibrium within yield, so it lies below the associated maximum"
@@ -145,9 +171,11 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         else:
             statement = "every collapse state lies below the associated maximum"
             below(f"{method}-below-associated", statement, result, bounding)
-        if least is not None and result is not least and not result.traits.brackets:
-            statement = "the search for the least collapse state finds none above another method's"
-            below(f"{least.method}-below-{method}", statement, least, result, of_search=True)
+        for seeker in seeking:
+            if result is not seeker and not result.traits.brackets:
+                statement = "the search for the least collapse state finds none above another method's"
+                below(f"{seeker.method}-below-{method}", statement, seeker, result, of_search=True)
+    gates += _bounds_below_states(results, unit)
     gates += [gate for gate in (_moves_no_lower(results, usable, usable[name]) for name in sorted(usable)) if gate]
     # one that takes brittle joints as broken says nothing of the wall as it stands
     no_equilibrium = bounding or (None if least is not None and least.details.get("broken") else least)
@@ -193,7 +221,7 @@ def _unique(results: CaseResults, usable: dict[str, Result]) -> tuple[Result | N
     if proved is not None:
         return proved, f"{proved.method} shows that there is none lower"
     least = next((result for result in collapses if result.traits.seeks_least and result.is_main), None)
-    bounding = next((result for result in collapses if result.traits.bounds_above), None)
+    bounding = next((result for result in collapses if _bounds_above(result)), None)
     if least is None or bounding is None or least.multiplier is None or bounding.multiplier is None:
         return None, ""
     equal = abs(bounding.multiplier - least.multiplier) <= _BOUND_TOLERANCE * max(

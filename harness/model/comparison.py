@@ -93,6 +93,7 @@ class CaseResults:
             result
             for result in self.results
             if result.traits.bounds_above
+            and result.flow == "associated"  # whatever a method says of itself: only such a mechanism bounds them
             and result.status is Status.OK
             and result.finding.has_multiplier
             and result.judge.accepted is not False

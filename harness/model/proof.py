@@ -100,13 +100,19 @@ def _rounded_down(bound: float) -> str:
 
 
 def is_collapse_state(result: Result) -> bool:
-    """Whether a result is a collapse state without dilatancy that the judge accepts."""
+    """Whether a result is a collapse state without dilatancy that the judge accepts and holds closely.
+
+    A method may ask the judge for a tolerance of a hundredth of the loads. A state that is known no better than that
+    is no least one beside states to rounding, and takes no proof from them.
+    """
+    worst = result.judge.worst
     return (
         result.status is Status.OK
         and result.finding.has_multiplier
         and result.judge.accepted is True
         and result.flow == "non-associated"
         and result.multiplier is not None
+        and (worst is None or worst[1] <= _CERTIFIED)
     )
 
 

@@ -27,6 +27,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.displaced import DisplacedState
 from harness.model.errors import InputError
 from harness.model.method import Finding, Status, Traits
+from harness.model.proof import least_known
 from harness.model.result import Judgement, Result, Verdict
 from tests.walls import case, stack
 
@@ -53,6 +54,7 @@ TRAITS = {
 
 
 def result(method: str = "la", multiplier: float | None = 0.5, **changes: Any) -> Result:
+    traits = changes.get("traits", TRAITS.get(method, Traits()))
     data: dict[str, Any] = {
         "case": "made-up",
         "method": method,
@@ -64,7 +66,8 @@ def result(method: str = "la", multiplier: float | None = 0.5, **changes: Any) -
         "blocks": 1,
         "interfaces": 1,
         "judge": Judgement(accepted=True),
-        "traits": TRAITS.get(method, Traits()),
+        "traits": traits,
+        "flow": "associated" if traits.bounds_above else "non-associated",
     }
     return Result.model_validate(data | changes)
 
@@ -302,6 +305,31 @@ def test_gates_go_by_what_methods_say_of_themselves_and_not_by_names():
         "path-below-associated": False,
         "floor-below-path": True,
     }
+
+
+def test_a_method_that_calls_another_state_the_associated_maximum_breaks_no_gate_of_others():
+    liar = result("liar", 0.5, traits=Traits(bounds_above=True), flow="non-associated")
+    found = gates(liar, result("la-associated", 0.6), result("fe", 0.55))
+    assert found == {"fe-below-associated": True, "liar-below-associated": True}
+
+
+def test_each_method_that_seeks_the_least_is_held_to_it_and_hides_no_other():
+    found = gates(result("floor", 0.5, traits=Traits(seeks_least=True)), result("la", 0.6))
+    assert found == {"floor-below-la": True, "la-below-floor": False}
+
+
+def test_a_lower_bound_above_a_known_state_is_told():
+    said = result("bold", 0.9, judge=Judgement(), details={"lower_bound": 0.8})
+    assert gates(said, result("la", 0.5)) == {"bold-bounds-below": False}
+    assert gates(result("modest", 0.9, judge=Judgement(), details={"lower_bound": 0.5}), result("la", 0.5)) == {
+        "modest-bounds-below": True
+    }
+
+
+def test_a_state_that_the_judge_holds_loosely_is_no_least_one():
+    loose = result("loose", 0.49, judge=Judgement(accepted=True, residuals={"equilibrium": 2e-3}, tolerance=1e-2))
+    close = result("la", 0.5, judge=Judgement(accepted=True, residuals={"equilibrium": 1e-12}))
+    assert least_known(CaseResults(case(stack(1)), [loose, close])) is close
 
 
 def test_what_a_method_says_of_itself_comes_back_from_its_own_process_and_the_store(tmp_path: Path):
