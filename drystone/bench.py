@@ -13,7 +13,7 @@ import math
 import statistics
 import time
 import tomllib
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drystone.bench_tables import COLUMNS, check_table, refuse_contradictions
 from drystone.comparing import Comparison, compare
 from drystone.walls import Wall, library_wall, new_wall
 from harness.engine import pipeline
@@ -28,7 +29,7 @@ from harness.engine.provenance import machine
 from harness.engine.run import Limits
 from harness.model.errors import InputError, did_you_mean
 from harness.model.method import Finding, Status
-from harness.model.proof import Standing
+from harness.model.proof import Standing, is_collapse_state
 from harness.model.result import Verdict
 
 if TYPE_CHECKING:
@@ -37,12 +38,6 @@ if TYPE_CHECKING:
 
 SAME = 1e-6
 """Relative distance from the least known multiplier up to which two states are the same one."""
-COLUMNS = (
-    "set", "version", "wall", "blocks", "interfaces", "method", "finding", "status", "judge", "multiplier", "lower",
-    "upper", "answered", "correct", "exact", "proved", "cpu_seconds", "wall_seconds", "peak_memory_bytes",
-    "speed_seconds", "speed_spread", "processor",
-)  # fmt: skip
-"""Of the table, in their order."""
 WRONG = (Verdict.OUTSIDE_TOLERANCE, Verdict.VIOLATES_BOUND)
 
 
@@ -151,12 +146,14 @@ class Bench:
     def summary(self) -> pd.DataFrame:
         """One row a method: walls, shares answered, correct, at the least known state, proved; error and CPU time.
 
-        Every share is of all walls of the set. CPU seconds are the sum over all walls, failures included; `cpu_of_best`
-        is the geometric mean of the ratio to the quickest correct method, over walls answered correctly.
+        Every share is of all walls of the table; a wall without a row of the method is one that it left out.
+        CPU seconds are the sum over all walls, failures included; `cpu_of_best` is the geometric mean of the ratio to
+        the quickest correct method, over walls answered correctly.
         """
         import pandas as pd
 
         table = self.complete
+        walls = table["wall"].nunique()
         best = table[table["correct"]].groupby("wall")["cpu_seconds"].min()
         rows = []
         for method, own in table.groupby("method", sort=False):
@@ -166,10 +163,10 @@ class Bench:
                 {
                     "method": method,
                     "walls": len(own),
-                    "answered": own["answered"].mean(),
-                    "correct": own["correct"].mean(),
-                    "at_least_known": (own["correct"] & (own["above_least"].abs() <= SAME)).mean(),
-                    "proved": own["proved"].mean(),
+                    "answered": own["answered"].sum() / walls,
+                    "correct": own["correct"].sum() / walls,
+                    "at_least_known": (own["correct"] & (own["above_least"].abs() <= SAME)).sum() / walls,
+                    "proved": own["proved"].sum() / walls,
                     "median_above_least": right["above_least"].median(),
                     "worst_above_least": right["above_least"].max(),
                     "cpu_seconds": own["cpu_seconds"].sum(),
@@ -184,12 +181,13 @@ class Bench:
         A wall that a method does not answer correctly is within no ratio.
         """
         table = self.complete
+        walls = table["wall"].nunique()
         best = table[table["correct"]].groupby("wall")["cpu_seconds"].min()
         found = {}
         for method, own in table.groupby("method", sort=False):
             right = own[own["correct"]]
             ratios = np.sort((right["cpu_seconds"] / right["wall"].map(best)).to_numpy(dtype=float))
-            shares = np.arange(1, len(ratios) + 1) / len(own)
+            shares = np.arange(1, len(ratios) + 1) / walls
             found[str(method)] = (ratios.tolist(), shares.tolist())
         return found
 
@@ -197,13 +195,16 @@ class Bench:
         """This table with the rows of another one, as others publish it.
 
         Raises:
-            InputError: columns are missing, it is of another set, version or walls, or a cell cannot be of its column.
+            InputError: columns are missing, it is of another set, version or walls, a cell cannot be of its column, or
+                rows contradict each other.
         """
         import pandas as pd
 
         check_table(other, name, *(set(self.table[column]) for column in ("set", "version", "wall")))
         kept = other[list(COLUMNS)].astype(self.table.dtypes.to_dict())
-        return Bench(pd.concat([self.table, kept], ignore_index=True))
+        joined = pd.concat([self.table, kept], ignore_index=True)
+        refuse_contradictions(joined, name)
+        return Bench(joined)
 
     def plot(self) -> Figure:
         """Performance profiles, and the height above the least known state over CPU time."""
@@ -212,54 +213,12 @@ class Bench:
         return profile_figure(self.profile(), self.complete)
 
 
-def check_table(
-    table: pd.DataFrame, name: str, sets: Collection[str], versions: Collection[int], walls: Collection[str]
-) -> None:
-    """Refuse a table of others that cannot be joined to one of these sets, versions and walls.
-
-    Args:
-        table: of others; name: of its file.
-
-    Raises:
-        InputError: as `Bench.joined`.
-    """
-    missing = [column for column in COLUMNS if column not in table.columns]
-    if missing:
-        raise InputError(f"it has no column {', '.join(missing)}", "Give a table of `drystone bench -o`", source=name)
-    for column, own in (("set", sets), ("version", versions)):
-        theirs = set(table[column])
-        if set(own) != theirs:
-            raise InputError(
-                f"its {column} is {', '.join(map(str, theirs)) or 'missing'} and not {', '.join(map(str, own))}",
-                "Join tables of one set and version",
-                source=name,
-            )
-    strange = next((column for column, wrong in _wrong_cells(table, set(walls)) if wrong.any()), None)
-    if strange is not None:
-        problem = f"column {strange} has a cell that cannot be in it"
-        raise InputError(problem, "Give a table of `drystone bench -o`", source=name)
-
-
-def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, Any]]:
-    """Columns of a table of others, each with which of its cells cannot be in it: other walls, no flag, no number."""
-    import pandas as pd
-
-    yield "wall", ~table["wall"].isin(walls)
-    yield "method", table["method"].isna()
-    for column in ("answered", "correct", "exact", "proved"):
-        yield column, ~table[column].map(lambda cell: isinstance(cell, bool | np.bool_))
-    for column in ("multiplier", "lower", "upper", "cpu_seconds", "wall_seconds", "speed_seconds", "speed_spread"):
-        numbers = pd.to_numeric(table[column], errors="coerce")
-        yield column, (numbers.isna() & table[column].notna()) | (numbers < 0.0) | np.isinf(numbers)
-    for column in ("blocks", "interfaces", "peak_memory_bytes"):
-        yield column, ~(pd.to_numeric(table[column], errors="coerce").between(0, 2**53))
-
-
 def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame:
     """The table of a comparison on a set of walls.
 
-    Its columns are `COLUMNS`: lower and upper of a measured bracket; exact: a state of the joint law, not a measured
-    bracket; proved: the minimum, by a certificate or to rounding; speed_seconds and speed_spread of the machine.
+    Its columns are `COLUMNS`: lower and upper of a measured bracket; exact: a state of the joint law that the judge
+    holds closely, not a measured bracket; proved: the minimum, by a certificate or to rounding; speed_seconds and
+    speed_spread of the machine.
     """
     import pandas as pd
 
@@ -286,7 +245,7 @@ def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame
                 "upper": upper,
                 "answered": answered,
                 "correct": answered and accepted and not refuted,
-                "exact": accepted and result.flow == "non-associated" and result.multiplier is not None,
+                "exact": is_collapse_state(result),
                 "proved": result.proof.standing in (Standing.MINIMUM, Standing.TO_ROUNDING),
                 "cpu_seconds": math.nan if result.cpu_seconds is None else result.cpu_seconds,
                 "wall_seconds": math.nan if result.wall_seconds is None else result.wall_seconds,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from drystone.bench import bench, check_table, set_names, wall_set
+from drystone.bench import bench, set_names, wall_set
+from drystone.bench_tables import check_table
 from drystone.cli import terminal
 from drystone.cli.options import (
     OUTPUT,
@@ -76,7 +77,8 @@ def bench_(
     check_methods(names)
     tables = [_read(path) for path in others]
     for path, table in zip(others, tables, strict=True):  # before all runs, not after them
-        check_table(table, str(path), {chosen.name}, {chosen.version}, {wall.name for wall in chosen.walls})
+        walls = {wall.name for wall in chosen.walls}
+        check_table(table, str(path), {chosen.name}, {chosen.version}, walls, names)
     preload_methods(names)
     with terminal.progress(len(chosen.walls) * len(names), quiet=as_json) as told:
         made = bench(

@@ -27,7 +27,7 @@ ROW = {
 def row(wall: str, method: str, multiplier: float, cpu: float, *, correct: bool = True, exact: bool = True) -> dict:
     return ROW | {
         "wall": wall, "method": method, "multiplier": multiplier, "cpu_seconds": cpu, "answered": True,
-        "correct": correct, "exact": exact, "proved": exact and correct,
+        "correct": correct, "exact": exact, "proved": False, "judge": "accepted" if correct else "rejected",
     }  # fmt: skip
 
 
@@ -88,6 +88,39 @@ def test_joined_table_can_lower_what_is_known():
     assert joined.summary().set_index("method").loc["slow", "at_least_known"] == pytest.approx(1 / 3)
 
 
+def test_wall_that_a_table_leaves_out_counts_against_its_methods():
+    joined = Bench(TABLE).joined(pd.DataFrame([row("a", "theirs", 0.4, 1.0)]), "theirs.csv")
+    assert joined.summary().set_index("method").loc["theirs", "correct"] == pytest.approx(1 / 3)
+    assert joined.profile()["theirs"] == ([1.0], pytest.approx([1 / 3]))
+
+
+FORGED: list[tuple[dict[str, object], str]] = [
+    ({"method": "slow"}, "slow on a has two rows"),
+    ({"answered": False}, "theirs on a is correct and not answered"),
+    ({"judge": "not judged"}, "theirs on a is correct and not answered, or the judge has not accepted it"),
+    ({"status": "timeout"}, "theirs on a is answered with another status than ok"),
+    ({"cpu_seconds": 0.0}, "theirs on a is answered in no CPU time"),
+    ({"multiplier": math.nan}, "theirs on a is an exact state without a multiplier"),
+    ({"proved": True, "exact": False}, "theirs on a is proved and no exact state"),
+    ({"proved": True, "multiplier": 0.5}, "slow has a state of a at 0.4, below 0.5"),
+    ({"lower": 0.5, "upper": 0.4}, "theirs on a has a bracket whose lower end is the higher"),
+    ({"blocks": 4}, "a has different numbers of blocks"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), FORGED)
+def test_rows_that_contradict_themselves_or_others_are_not_joined(change: dict, said: str):
+    theirs = pd.DataFrame([row("a", "theirs", 0.4, 1.0) | change])
+    with pytest.raises(InputError, match=rf"theirs\.csv: {said}"):
+        Bench(TABLE).joined(theirs, "theirs.csv")
+
+
+def test_state_below_one_that_is_proved_is_not_joined():
+    ours = Bench(TABLE.assign(proved=TABLE["correct"] & TABLE["exact"] & (TABLE["method"] == "slow")))
+    with pytest.raises(InputError, match=r"theirs has a state of a at 0\.25, below 0\.4, which a row calls the proved"):
+        ours.joined(pd.DataFrame([row("a", "theirs", 0.25, 9.0)]), "theirs.csv")
+
+
 @pytest.mark.parametrize(
     ("change", "said"), [({"version": 2}, "its version is 2"), ({"set": "large"}, "its set is large")]
 )
@@ -120,7 +153,8 @@ def test_table_with_a_cell_that_cannot_be_in_its_column_is_not_joined(column: st
 
 def test_table_read_back_from_its_file_is_joined(tmp_path: Path):
     TABLE.to_csv(tmp_path / "t.csv", index=False)
-    assert len(Bench(TABLE).joined(pd.read_csv(tmp_path / "t.csv"), "t.csv").table) == 2 * len(TABLE)
+    theirs = pd.read_csv(tmp_path / "t.csv").assign(method=lambda table: table["method"] + "-theirs")
+    assert len(Bench(TABLE).joined(theirs, "t.csv").table) == 2 * len(TABLE)
 
 
 def test_table_has_all_columns_that_are_promised_and_no_other():
@@ -153,10 +187,14 @@ def test_command_runs_a_set_and_writes_its_table_and_figure(tmp_path: Path):
         wide["fe"] <= wide["la-associated"] * (1.0 + 1e-9)
     ).all()  # theory: no wall bears more than the associated maximum
     assert "<svg" in (tmp_path / "t.svg").read_text()
-    again = commands.drystone(*words, "--join", tmp_path / "t.csv", "--json")
+    twice = commands.drystone(*words, "--join", tmp_path / "t.csv")
+    assert twice.returncode == 2
+    assert "t.csv: it has rows of fe, and so has the other table" in twice.stderr
+    table.assign(method=table["method"] + "-there").to_csv(tmp_path / "theirs.csv", index=False)
+    again = commands.drystone(*words, "--join", tmp_path / "theirs.csv", "--json")
     told = {item["method"]: item for item in json.loads(again.stdout)["methods"]}
-    assert told["fe"]["walls"] == 60
-    assert np.isclose(told["fe"]["correct"], 1.0)
+    assert told["fe-there"]["walls"] == 30
+    assert np.isclose(told["fe-there"]["correct"], 1.0)
 
 
 def test_command_refuses_what_is_no_table(tmp_path: Path):
