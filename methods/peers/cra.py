@@ -20,11 +20,12 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.deadline import Deadline, best_so_far
-from harness.model.method import Answer, Finding, Solver, Status
-from methods.numerics.claims import analysed
+from harness.model.deadline import Deadline
 from methods.numerics.optional import optional
+from methods.peers.bisection import Bisection, Words
 from methods.peers.settings import BisectionSettings, CraSettings
+
+_NO_PROOF = "that it finds none is no proof of collapse"
 
 
 def load_cra(method: str) -> Any:
@@ -62,7 +63,13 @@ class Solvable:
         self._forces_at = layout["f"]
         self._options = native._CRA_OPTIONS if self._coupled else None
         self.forces: FloatArray | None = None
+        self.motion: FloatArray | None = None
         self.said: list[str] = []
+
+    @staticmethod
+    def refusal(assembly: Assembly) -> str:
+        """Why a wall cannot be modelled; empty where it can."""
+        return ""
 
     def _extruded(self) -> Any:
         """The wall as blocks one length scale thick; x, y of the wall are x, z of it."""
@@ -132,97 +139,20 @@ class Solvable:
         return forces * self._force
 
 
-class Bisection(Solver):
-    """The multiplier between one at which compas_cra finds a solution and one at which it does not.
-
-    Args:
-        method: name of it, for messages.
-        what: it asks, in words.
-
-    Attributes:
-        package: that it needs.
-    """
-
-    package = "compas_cra"
-
-    def __init__(self, method: str, what: str) -> None:
-        self._method, self._what = method, what
-
-    def solve(self, assembly: Assembly, settings: BisectionSettings) -> Answer:
-        """The bracket [solved, not solved] with the forces of its lower end.
-
-        Raises:
-            InputError: compas_cra is not installed.
-        """
-        load_cra(self._method)
-        return analysed(assembly, lambda part: self._of_component(part, settings))
-
-    def _of_component(self, assembly: Assembly, settings: BisectionSettings) -> Answer:
-        if assembly.n_free == 0:
-            return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
-        low, high = float(assembly.friction.min()), float(assembly.friction.max())
-        if low != high:
-            sentence = f"compas_cra takes one friction coefficient for all joints; the wall has {low:g} to {high:g}"
-            return Answer(Status.REFUSED, Finding.NONE, sentence)
-        problem = Solvable(assembly, settings, self._method)
-        solved, unsolved = list[float](), list[float]()
-
-        def bisected() -> bool:
-            unit = assembly.load_unit
-            if not problem.at(0.0):
-                return True
-            solved.append(0.0)
-            step = settings.load_step * unit
-            while assembly.has_live_load and solved[-1] < settings.load_cap * unit:
-                width = 0.5 * (unsolved[-1] - solved[-1]) if unsolved else step
-                if unsolved and 2.0 * width <= settings.accuracy * unsolved[-1]:
-                    break
-                step *= 2.0
-                middle = solved[-1] + width
-                (solved if problem.at(middle) else unsolved).append(middle)
-            return True
-
-        ended = best_so_far(bisected, lambda: False)
-        return self._concluded(problem, settings, max(solved, default=None), min(unsolved, default=None), ended)
-
-    def _concluded(
-        self, problem: Solvable, settings: BisectionSettings, solved: float | None, unsolved: float | None, ended: bool
-    ) -> Answer:
-        told = {"solved": problem.said}
-        if solved is None:
-            sentence = f"compas_cra found {self._what} under the dead load not, which does not show that the wall falls"
-            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=told)
-        if not problem.assembly.has_live_load:
-            sentence = f"compas_cra found {self._what} under the dead load; no live load is given"
-            answer = Answer(Status.OK, Finding.STANDS, sentence, details=told)
-        elif unsolved is None:
-            sentence = f"compas_cra found {self._what} up to multiplier {solved:.6g}; larger loads were not tried"
-            answer = Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=told)
-        else:
-            sentence = (
-                f"compas_cra found {self._what} at {solved:.6g} and not at {unsolved:.6g}; that it finds none is no "
-                "proof of collapse"
-            )
-            loose = unsolved - solved > settings.accuracy * unsolved
-            answer = Answer(Status.NOT_CONVERGED if loose else Status.OK, Finding.COLLAPSES, sentence, details=told)
-            answer.multiplier, answer.bracket = 0.5 * (solved + unsolved), (solved, unsolved)
-            answer.bracket_meaning = "[highest multiplier with a solution, lowest without]"
-        if not ended:
-            answer.details["stopped_by_limit"] = True
-        answer.forces, answer.forces_multiplier = problem.forces, solved
-        answer.iterations = len(problem.said)
-        return answer
-
-
 class RigidBlockEquilibrium(Bisection):
     """Rigid-block equilibrium (`rbe`)."""
 
+    package = "compas_cra"
+
     def __init__(self) -> None:
-        super().__init__("rbe", "an equilibrium without tension")
+        words = Words("compas_cra", "found an equilibrium without tension", _NO_PROOF)
+        super().__init__("rbe", words, load_cra, Solvable)
 
 
 class CoupledRigidBlockAnalysis(Bisection):
     """Coupled rigid-block analysis (`cra`)."""
 
+    package = "compas_cra"
+
     def __init__(self) -> None:
-        super().__init__("cra", "coupled forces and motions")
+        super().__init__("cra", Words("compas_cra", "found coupled forces and motions", _NO_PROOF), load_cra, Solvable)

@@ -7,6 +7,7 @@ from methods.peers.settings import (
     BisectionSettings,
     CraSettings,
     DiscoptSettings,
+    Lmgc90Settings,
     OpenSeesSettings,
     PounceSettings,
     ScipSettings,
@@ -121,3 +122,21 @@ CRA = Listed(
     ),
 )
 """Compas_cra, coupled rigid-block analysis, the multiplier by bisection (`cra`)."""
+
+LMGC90 = Listed(
+    name="lmgc90",
+    family="peers",
+    title="LMGC90 (contact dynamics), by bisection",
+    solver="methods.peers.lmgc90:ContactDynamics",
+    Settings=Lmgc90Settings,
+    # Gauss and Seidel's iterations of LMGC90 end within some 1e-4 of the mean contact force.
+    tolerance=1e-3,
+    traits=Traits(
+        caption="between rest and motion in LMGC90",
+        brackets=True,
+        colour="#555555",
+        marker="*",
+        line="dashdot",
+    ),
+)
+"""Non-smooth contact dynamics of LMGC90, the multiplier by bisection (`lmgc90`)."""

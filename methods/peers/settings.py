@@ -96,3 +96,26 @@ class CraSettings(BisectionSettings):
 
     motion: float = Field(default=1e-3, gt=0.0)
     overlap: float = Field(default=1e-4, gt=0.0)
+
+
+class Lmgc90Settings(BisectionSettings):
+    """How the multiplier is bisected, and how LMGC90 follows a load.
+
+    Attributes:
+        time_step: in times in which a fall from rest passes about half a length scale.
+        theta: of the time integration.
+        alert: gap up to which contacts are looked for, in length scales.
+        moved: displacement from which the wall has moved, in length scales.
+        at_rest: largest displacement of a block in a step at rest, beside that of a free fall in it.
+        rest_steps: that a wall must be so for.
+        most_steps: after which it has not come to rest.
+    """
+
+    accuracy: float = Field(default=2e-3, gt=0.0, le=0.1)
+    time_step: float = Field(default=0.02, gt=0.0, le=1.0)
+    theta: float = Field(default=0.5, ge=0.5, le=1.0)
+    alert: float = Field(default=0.01, gt=0.0, le=0.1)
+    moved: float = Field(default=1e-3, gt=0.0, le=0.1)
+    at_rest: float = Field(default=1e-3, gt=0.0, le=0.1)
+    rest_steps: int = Field(default=20, ge=1)
+    most_steps: int = Field(default=2000, ge=1)
