@@ -147,7 +147,8 @@ def theory_gates(results: CaseResults) -> list[Gate]:
         limit = upper.multiplier if upper.bracket is None else upper.bracket[1]
         if value is None or limit is None:
             return
-        slack = (_BOUND_TOLERANCE + lower.traits.held_accuracy) * max(unit, abs(limit))
+        open_left = sum(item.judge.multiplier_error or 0.0 for item in (lower, upper))
+        slack = (_BOUND_TOLERANCE + lower.traits.held_accuracy) * max(unit, abs(limit)) + open_left
         gates.append(
             Gate(
                 name=name,

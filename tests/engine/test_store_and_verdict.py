@@ -332,6 +332,15 @@ def test_a_state_that_the_judge_holds_loosely_is_no_least_one():
     assert least_known(CaseResults(case(stack(1)), [loose, close])) is close
 
 
+def test_a_state_is_held_against_others_within_what_the_judge_leaves_open_of_it():
+    def found(error: float) -> dict[str, bool | None]:
+        loose = result("loose", 0.49, judge=Judgement(accepted=True, multiplier_error=error))
+        return gates(result("la", 0.5), loose)
+
+    assert found(0.011) == {"la-below-loose": True}
+    assert found(0.009) == {"la-below-loose": False}
+
+
 def test_what_a_method_says_of_itself_comes_back_from_its_own_process_and_the_store(tmp_path: Path):
     run = Run(case(stack(1)), "la-associated", {}, Limits(seconds=60.0))
     with open_store(tmp_path / "s.sqlite") as store:
