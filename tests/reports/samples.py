@@ -263,7 +263,7 @@ def typical() -> ComparisonRun:
                 [
                     solved(single, "fe", 0.5 / 1.05, cpu=0.01),
                     solved(single, "la", 0.4, cpu=0.02),
-                    solved(single, "la-associated", 0.6 / 1.1, cpu=0.01),
+                    solved(single, "la-associated", 0.6 / 1.1, cpu=0.01, flow="associated"),
                     solved(single, "de", 0.47, cpu=0.4, bracket=(0.4127, 0.5455), flow="approximate"),
                 ],
             ),
