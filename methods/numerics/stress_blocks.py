@@ -22,7 +22,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from methods.numerics.statics import COST, least_shear_slacks, rows_of_blocks, shear_limits
+from methods.numerics.shear_rows import COST, least_shear_slacks, rows_of_blocks, shear_limits
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicSolution, StaticSolution
 from methods.numerics.linear_programme import INFINITY, Programme
-from methods.numerics.statics import Entries, entries_of_shear_limits, least_shear_slacks, rows_of_blocks, shear_unit
+from methods.numerics.shear_rows import Entries, entries_of_shear_limits, least_shear_slacks, rows_of_blocks, shear_unit
 from methods.numerics.vertex import Vertex
 
 _SIMPLEX_UP_TO = 400
