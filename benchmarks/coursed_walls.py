@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from benchmarks.walls import random_wall
-from harness.model.method import Status, load_method
+from harness.model.method import Status
+from harness.model.method_registry import load_method
 from methods.fe.answers import SPREAD
 from methods.fe.gap_springs import GapSprings
 from methods.fe.settings import GapSpringsSettings

@@ -20,7 +20,7 @@ from scipy.optimize import linprog
 
 from benchmarks.walls import bond, stack
 from harness.model.assembly import Assembly
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 
 
 def greatest_with_unloaded_heads(assembly: Assembly) -> float:

@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 
 from benchmarks.walls import drawn
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings

@@ -21,7 +21,8 @@ from drystone.cli.options import say
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Finding, load_method, prepared
+from harness.model.method import Finding
+from harness.model.method_registry import load_method, prepared
 from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
 

@@ -16,7 +16,8 @@ from benchmarks.walls import bond, irregular_wall
 from cases.start import STARTS
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Answer, load_method
+from harness.model.method import Answer
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 
 ABOVE = 1e-6

@@ -23,7 +23,7 @@ from cases.useful import irregular_stones
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import load_method, method_names
+from harness.model.method_registry import load_method, method_names
 from harness.model.result import relative_velocities
 from harness.model.wall import Wall
 from methods.la.search import LimitAnalysis

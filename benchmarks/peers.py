@@ -20,7 +20,8 @@ from drystone.bench import Bench, machine_speed, rows_of, set_names, wall_set
 from drystone.cli.options import say
 from drystone.comparing import compare
 from harness.model.comparison import CaseResults, Certified
-from harness.model.method import Listed, Status, load_method, method_names
+from harness.model.method import Listed, Status
+from harness.model.method_registry import load_method, method_names
 from harness.model.proof import is_collapse_state
 from harness.model.result import Result
 

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 
 from benchmarks.limit_analysis import SAME, by_clarabel, first_below, least_time
 from benchmarks.walls import running_bond
-from harness.model.method import Answer, load_method
+from harness.model.method import Answer
+from harness.model.method_registry import load_method
 
 COURSES = {21: 3, 55: 5, 105: 7, 210: 10, 465: 15, 990: 22, 2485: 35}
 """Bricks a course of a wall of so many bricks."""

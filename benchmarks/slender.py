@@ -21,7 +21,8 @@ from harness.engine.run import Limits, Run
 from harness.engine.threads import pin
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case, CaseFile
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 from harness.model.wall import Wall
 

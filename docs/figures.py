@@ -170,7 +170,7 @@ def friction_figure(folder: Path) -> None:
     """The 21-brick wall at seven frictions: the values that the last baseline recorded, method by method."""
     from harness.engine.baseline import read_baseline
     from harness.model.case import read_case, shipped_cases
-    from harness.model.method import load_method
+    from harness.model.method_registry import load_method
 
     values = read_baseline(shipped_cases() / "baseline.json").values
     names = [name for name in values if name == "wall-21" or name.startswith("wall-21-friction-")]

@@ -49,7 +49,7 @@ def columns_page(folder: Path) -> None:
 def settings_page(folder: Path) -> None:
     """Every installed method with its settings."""
     from harness.model.errors import InputError
-    from harness.model.method import listed_methods, load_method
+    from harness.model.method_registry import listed_methods, load_method
 
     parts = ["# Methods and their settings", ""]
     for name in listed_methods():

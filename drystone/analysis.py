@@ -15,13 +15,8 @@ from harness.engine.plan import check_methods, check_shares
 from harness.engine.run import Limits, Run
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
-from harness.model.method import (
-    Answer,
-    Method,
-    checked_method,
-    listed_methods,
-    load_method,
-)
+from harness.model.method import Answer, Method
+from harness.model.method_registry import checked_method, listed_methods, load_method
 from harness.model.proof import Proof, proof_of
 from harness.model.reading import validate
 from harness.model.result import Judgement, result_of

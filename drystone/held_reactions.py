@@ -21,7 +21,8 @@ from harness.engine.judge import answered
 from harness.engine.reaction_judge import judge_held, reaction_of, work_scale
 from harness.model.assembly import FloatArray
 from harness.model.bars import bar_tensions
-from harness.model.method import Finding, Method, Status, check_takes, load_method
+from harness.model.method import Finding, Method, Status
+from harness.model.method_registry import check_takes, load_method
 from harness.model.result import Judgement, Result
 
 

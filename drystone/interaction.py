@@ -25,7 +25,8 @@ from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.live_load import with_live_load
 from harness.model.load_cases import load_cases_of, named_loads
-from harness.model.method import Method, load_method
+from harness.model.method import Method
+from harness.model.method_registry import load_method
 from harness.model.reading import validate
 from harness.model.result import Result
 

@@ -8,7 +8,8 @@ from drystone.walls import Wall, new_wall
 from harness.engine.preload import shipped
 from harness.model.errors import InputError, MissingPackage
 from harness.model.library import library
-from harness.model.method import Method, listed_methods, load_method, prepared
+from harness.model.method import Method
+from harness.model.method_registry import listed_methods, load_method, prepared
 
 FEW, MANY = {"count": 3, "friction": 0.25}, {"length": 8.0, "height": 3.0}
 """Bricks for every method; and more than the 200 blocks above which the quick one takes other loops too."""

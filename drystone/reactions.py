@@ -14,7 +14,7 @@ from harness.engine.reaction_judge import judge_reaction
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions, with_bars_as_joints
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.passive import FILL
 from harness.model.result import Judgement, fastest_vertex
 from harness.model.units import DIMENSIONLESS

@@ -25,7 +25,8 @@ from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import validate
 from harness.model.result import Result
 

@@ -24,7 +24,7 @@ from harness.engine.sweep.running import sweep as running
 from harness.engine.sweep.study import Study, read_study
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.reading import wall_json
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from drystone.walls import Wall
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
-from harness.model.method import check_takes, load_method
+from harness.model.method_registry import check_takes, load_method
 from harness.model.result import Judgement
 
 if TYPE_CHECKING:

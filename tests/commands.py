@@ -91,7 +91,7 @@ def serve() -> None:
 
     pin()
     import drystone.cli.main
-    from harness.model.method import load_method
+    from harness.model.method_registry import load_method
 
     for module, _, _ in drystone.cli.main.COMMANDS.values():
         __import__(f"drystone.cli.{module}")

@@ -11,7 +11,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from tests.exact_programme import greatest_multiplier
 from tests.walls import PUSH, assembly, running_bond, stack

@@ -6,7 +6,7 @@ from typing import Any
 
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 from tests.walls import assembly
 

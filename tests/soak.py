@@ -30,7 +30,8 @@ from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
 from harness.model.case import Case, CaseFile
 from harness.model.errors import InputError
-from harness.model.method import Status, method_names
+from harness.model.method import Status
+from harness.model.method_registry import method_names
 from harness.model.result import Result
 from harness.model.wall import Wall
 

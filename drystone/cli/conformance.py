@@ -17,7 +17,8 @@ from harness.engine.threads import pin
 from harness.model.errors import InputError
 from harness.model.foreign.program_method import method_of
 from harness.model.foreign.register import program_of
-from harness.model.method import Method, load_method, prepared
+from harness.model.method import Method
+from harness.model.method_registry import load_method, prepared
 
 
 @click.command()

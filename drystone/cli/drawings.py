@@ -27,7 +27,7 @@ from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
 from harness.model.library import library
 from harness.model.load_cases import named_loads
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.plausibility import saying
 from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend

@@ -35,7 +35,8 @@ from harness.formats.registry import FORMATS, format_written
 from harness.model import inspection
 from harness.model.errors import InputError
 from harness.model.load_steps import NAME as LOAD_STEPS
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import wall_json
 from harness.model.units import LengthUnit
 from harness.model.wall import Wall

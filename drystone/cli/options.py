@@ -24,7 +24,7 @@ from harness.model.json_text import MOST_SHOWN
 from harness.model.live_load import both_signs as signs_of
 from harness.model.live_load import is_horizontal, with_live_load
 from harness.model.load_cases import load_cases_of
-from harness.model.method import listed_methods
+from harness.model.method_registry import listed_methods
 from harness.model.writing import check_output, replacing
 
 if TYPE_CHECKING:

@@ -35,7 +35,8 @@ from harness.engine.run import Limits
 from harness.model.envelope import envelope
 from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.load_cases import named_loads
-from harness.model.method import Status, load_method
+from harness.model.method import Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 
 _SEVERITY = (INPUT_ERROR, 1, 3, 0)

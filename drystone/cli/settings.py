@@ -7,7 +7,7 @@ from typing import Any
 
 from harness.engine.plan import check_methods
 from harness.model.errors import InputError, did_you_mean
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.reading import validate
 
 

@@ -39,7 +39,8 @@ from harness.model.foreign.result_document import ResultDocument, answer_from_fi
 from harness.model.json_text import read_json
 from harness.model.library import library
 from harness.model.load_cases import load_cases_of
-from harness.model.method import Finding, Status, listed_methods, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import listed_methods, load_method
 from harness.model.reading import read_wall, wall_json
 from harness.model.result import Result
 from harness.model.wall import Wall

@@ -33,7 +33,8 @@ from harness.model.answer_check import AnswerFault
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
 from harness.model.foreign.program_method import ProgramMethod
-from harness.model.method import Finding, Method, Status, method_names
+from harness.model.method import Finding, Method, Status
+from harness.model.method_registry import method_names
 from harness.model.result import Judgement, Result
 
 _WIDEST_BRACKET = 0.01

@@ -19,7 +19,7 @@ from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.difference import Difference, Kind, Pairs, Row, Slower
 from harness.model.errors import InputError
-from harness.model.method import load_method, method_names
+from harness.model.method_registry import load_method, method_names
 
 
 @dataclass(frozen=True)

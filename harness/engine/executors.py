@@ -17,7 +17,8 @@ from harness.engine.resource_use import cpu_seconds
 from harness.engine.run import TimedResult, measured_result
 from harness.engine.worker import Task, loaded, solved
 from harness.model.answer_check import checked
-from harness.model.method import Method, allowing, check_takes, prepared
+from harness.model.method import Method, allowing
+from harness.model.method_registry import check_takes, prepared
 from harness.model.reading import validate
 
 _RUNS_A_CHILD = 500

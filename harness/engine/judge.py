@@ -65,7 +65,8 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
 from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
-from harness.model.method import Finding, Method, Status, check_takes
+from harness.model.method import Finding, Method, Status
+from harness.model.method_registry import check_takes
 from harness.model.result import Judgement, Result, bracket_is_wide, plastic_of, residual_of, result_of
 
 

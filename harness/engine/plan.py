@@ -14,7 +14,8 @@ from harness.model.case import Case, case_folders, case_of_wall, id_of, read_cas
 from harness.model.errors import InputError, did_you_mean
 from harness.model.json_text import MOST_SHOWN
 from harness.model.library import library
-from harness.model.method import Method, check_takes, listed_methods, load_method, method_names
+from harness.model.method import Method
+from harness.model.method_registry import check_takes, listed_methods, load_method, method_names
 from harness.model.reading import DRAWINGS
 
 

@@ -8,7 +8,8 @@ from collections.abc import Iterable
 
 from harness.model.errors import InputError
 from harness.model.foreign.register import program_named
-from harness.model.method import load_method, method_points, prepared
+from harness.model.method import method_points
+from harness.model.method_registry import load_method, prepared
 
 VARIABLE = "DRYSTONE_PRELOAD"
 """Environment variable with the names of the methods a fork server shall load, separated by commas."""

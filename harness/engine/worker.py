@@ -36,18 +36,8 @@ from harness.model.details import MISSING_PACKAGE
 from harness.model.errors import InputError, MissingPackage, visible
 from harness.model.foreign.program_method import method_of
 from harness.model.foreign.register import Program
-from harness.model.method import (
-    Answer,
-    Finding,
-    Method,
-    Settings,
-    Status,
-    Traits,
-    allowing,
-    check_takes,
-    load_method,
-    prepared,
-)
+from harness.model.method import Answer, Finding, Method, Settings, Status, Traits, allowing
+from harness.model.method_registry import check_takes, load_method, prepared
 from harness.model.reading import validate
 from harness.model.run_context import running_in
 

@@ -16,7 +16,7 @@ from harness.model.content import hash_of
 from harness.model.errors import InputError
 from harness.model.fields import Strict
 from harness.model.json_text import read_json, read_toml
-from harness.model.method import method_names
+from harness.model.method_registry import method_names
 from harness.model.reading import parse_wall, read_document, validate
 from harness.model.wall import Wall
 

@@ -15,7 +15,8 @@ import time
 from typing import Any
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Solver, Status, load_method
+from harness.model.method import Answer, Finding, Solver, Status
+from harness.model.method_registry import load_method
 from harness.model.rings import rings_of
 from methods.de.settings import REACH, ClosedSettings, UnevenSettings
 from methods.de.uneven.gapped import GappedWall, load_gapped

@@ -89,7 +89,7 @@ class LimitAnalysisFamily(Solver):
         """What solves for the greatest multiplier where joints crush.
 
         Raises:
-            ValueError: the method takes no such joints; `harness.model.method.check_takes` refuses them before.
+            ValueError: the method takes no such joints, which `check_takes` refuses before.
         """
         raise ValueError("it takes no joints with compressive strength")
 

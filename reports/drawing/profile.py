@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from reports.drawing.figures import PAGE, style
 
 ROUNDING = 1e-12

@@ -16,7 +16,7 @@ from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import read_case
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from cases.generate import ROOT
 from harness.model.case import Case, ReferenceType, case_folders, read_case
-from harness.model.method import method_names
+from harness.model.method_registry import method_names
 
 FOLDERS = case_folders([ROOT])
 PUBLISHED = 38

@@ -6,7 +6,7 @@ import pytest
 
 from harness.conformance import ConformanceCheck, checks
 from harness.conformance.suite import Outcome
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 
 METHODS = [
     "fe",

@@ -11,7 +11,8 @@ from harness.conformance import conforms, suite
 from harness.conformance.suite import CheckFound, Outcome
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, Method, Settings, Status, load_method
+from harness.model.method import Answer, Finding, Method, Settings, Status
+from harness.model.method_registry import load_method
 
 
 class Faulty(Method):

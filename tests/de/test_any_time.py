@@ -12,7 +12,8 @@ from harness.engine.run import Limits, Run
 from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile
 from harness.model.components import analysed_apart
-from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
+from harness.model.method import Answer, Finding, OutOfTime, Status
+from harness.model.method_registry import load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
 from methods.de import answers as de_answer

@@ -11,7 +11,8 @@ from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.bars import bar_tensions, with_bars_as_joints
 from harness.model.case import case_folders, read_case, shipped_cases
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses

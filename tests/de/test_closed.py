@@ -10,7 +10,8 @@ import pytest
 from harness.engine.judge import judge
 from harness.engine.residuals import displaced_residuals, force_residuals
 from harness.model.displaced import DisplacedState
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import result_of
 from methods.de.engines.edges import FacingEdges
 from methods.de.methods import DE_CLOSED

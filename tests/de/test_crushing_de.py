@@ -12,7 +12,8 @@ from harness.engine.judge import answered, judge
 from harness.engine.measured_motion import motion_faults
 from harness.model.assembly import Assembly
 from harness.model.details import MOVING_FORCES
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result, residual_of
 from methods.numerics.pressed_state import nearest_motion
 from methods.numerics.pressed_strips import pressed_shares, set_in

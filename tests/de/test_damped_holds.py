@@ -13,7 +13,8 @@ from harness.engine.judge import answered
 from harness.engine.plan import find_cases
 from harness.engine.symmetry import beside
 from harness.model.build import build
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack

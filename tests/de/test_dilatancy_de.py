@@ -15,7 +15,8 @@ import pytest
 from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
 from harness.model.case import case_folders, read_case, shipped_cases
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result, relative_velocities
 from tests.fe.test_dilatancy_fe import between_plates, dilatant, wedge
 from tests.walls import assembly, running_bond, stack

@@ -9,7 +9,8 @@ import pytest
 
 from harness.engine.judge import answered, judge
 from harness.model.build import build
-from harness.model.method import Method, load_method, prepared
+from harness.model.method import Method
+from harness.model.method_registry import load_method, prepared
 from harness.model.wall import Wall
 from reports.findings.agreement import measure_of, velocity_cosine
 from tests.walls import assembly, running_bond, stack, wall_data

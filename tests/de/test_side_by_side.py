@@ -16,7 +16,8 @@ from harness.engine.isolate import run_isolated
 from harness.engine.worker import Task
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer, Finding, Status, allowing, load_method
+from harness.model.method import Answer, Finding, Status, allowing
+from harness.model.method_registry import load_method
 from methods.de.engines.mass_scaling import MassScaling
 from methods.numerics.forks import ForkLost, in_forks
 from tests.commands import drystone

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.slender import known_walls, verdict
 from harness.engine.judge import answered
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 
 
 @pytest.mark.parametrize(

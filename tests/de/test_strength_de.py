@@ -12,7 +12,8 @@ import pytest
 
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result, residual_of
 from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses

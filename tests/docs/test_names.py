@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from harness.model.library import library
-from harness.model.method import method_names
+from harness.model.method_registry import method_names
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted(path for room in ("harness", "reports") for path in (ROOT / room).rglob("*.py"))

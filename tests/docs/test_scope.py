@@ -10,7 +10,7 @@ import pytest
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.load_cases import named_loads
-from harness.model.method import check_takes, listed_methods, load_method
+from harness.model.method_registry import check_takes, listed_methods, load_method
 from harness.model.wall import Wall
 from tests.walls import built_load_case
 

@@ -17,19 +17,8 @@ import drystone
 from harness.engine.preload import shipped
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import (
-    GROUP,
-    Answer,
-    Finding,
-    Listed,
-    Method,
-    Solver,
-    Status,
-    Traits,
-    load_method,
-    method_names,
-    prepared,
-)
+from harness.model.method import GROUP, Answer, Finding, Listed, Method, Solver, Status, Traits
+from harness.model.method_registry import load_method, method_names, prepared
 from methods.dummy import Dummy
 
 SOLVERS = {"numba", "llvmlite", "highspy", "osqp", "pymunk", "ipyopt", "cvxpy", "mujoco"}
@@ -106,7 +95,7 @@ def test_a_listed_method_leads_to_what_solves_it(name: str):
 
 @pytest.mark.parametrize("given", ["tests.engine.test_imports:Alone", "tests.engine.test_imports:GROUP"])
 def test_what_an_entry_point_leads_to_must_be_a_method(given: str, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("harness.model.method.method_points", lambda: (EntryPoint("alone", given, GROUP),))
+    monkeypatch.setattr("harness.model.method_registry.method_points", lambda: (EntryPoint("alone", given, GROUP),))
     with pytest.raises(InputError, match=r"method alone.* is no method.*inherits from"):
         load_method("alone")
 

@@ -9,7 +9,8 @@ from harness.engine.judge import answered, judge
 from harness.engine.residuals import block_sums, collapse_residuals
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import contact_states, result_of
 from tests.known_walls import box, of_blocks
 from tests.walls import assembly, stack

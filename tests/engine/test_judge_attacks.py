@@ -17,7 +17,8 @@ from harness.engine.judge import COARSEST, answered, judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.displaced import DisplacedState
-from harness.model.method import Answer, Finding, Method, Status, load_method
+from harness.model.method import Answer, Finding, Method, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Judgement, result_of
 from harness.model.wall import Wall
 from tests.best_cheats import bearing

@@ -17,7 +17,8 @@ from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.foreign.result_document import answer_from_file
 from harness.model.json_text import read_json
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.proof import Proof
 from harness.model.reading import read_wall
 from harness.model.result import Result, result_of

@@ -12,7 +12,8 @@ from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.foreign.result_document import answer_from_file
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
 from tests.walls import assembly, stack

@@ -19,7 +19,8 @@ from hypothesis import strategies as st
 import drystone
 from harness.engine.judge import judge
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Method, Settings, Status, load_method
+from harness.model.method import Answer, Finding, Method, Settings, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Judgement, result_of
 from tests.enumeration import least_by_enumeration
 from tests.exact_programme import greatest_multiplier

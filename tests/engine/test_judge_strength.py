@@ -12,7 +12,8 @@ import pytest
 from harness.engine.judge import answered, judge
 from harness.engine.residuals import force_residuals
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Judgement, Result, result_of
 from tests.walls import assembly, stack
 

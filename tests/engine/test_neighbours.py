@@ -18,7 +18,8 @@ from harness.engine.sweep.neighbours import handed_on
 from harness.engine.sweep.running import Row, sweep
 from harness.engine.sweep.study import Study
 from harness.engine.sweep.summary import summarise, varied_of
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import validate
 from harness.model.result import relative_velocities
 from tests.model.test_components import three_columns

@@ -14,7 +14,8 @@ from harness.model.assembly import Assembly
 from harness.model.bars import path_column
 from harness.model.details import BAR_FORCES
 from harness.model.load_steps import LoadSteps
-from harness.model.method import Finding, load_method
+from harness.model.method import Finding
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 from tests.la.test_ties import BLOCK, PRINTED, SIDE, arch, bar, block, built, random_wall, tied
 from tests.walls import assembly, stack

@@ -7,7 +7,7 @@ import pytest
 
 from harness.model.assembly import Assembly
 from harness.model.breakpoints import CHANGES, Breakpoint, breakpoints
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from tests.known_walls import box, of_blocks
 from tests.la.test_ties import tied

@@ -20,7 +20,8 @@ from harness.engine.symmetry import VIEWS, beside
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import Finding, load_method
+from harness.model.method import Finding
+from harness.model.method_registry import load_method
 from harness.model.result import Result, plastic_and_residual_of
 from harness.model.wall import Wall
 from tests.walls import assembly, running_bond, stack

@@ -16,7 +16,8 @@ from harness.engine.judge import answered
 from harness.engine.worker import Task
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall
 from methods.fe.gap_springs import GapSprings
 from methods.fe.methods import FE

@@ -17,7 +17,8 @@ from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import case_folders, read_case, shipped_cases
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 from harness.model.wall import Wall
 from methods.springs.model.factor import make_factor

@@ -12,7 +12,8 @@ import pytest
 from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result, residual_of, result_of
 from harness.model.wall import Wall
 from methods.numerics.pressed_state import exact_state, moving_rows

@@ -14,7 +14,8 @@ import pytest
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.load_steps import STATES
-from harness.model.method import Finding, load_method
+from harness.model.method import Finding
+from harness.model.method_registry import load_method
 from harness.model.result import Result, residual_of
 from methods.fe.answers import joint_states
 from methods.fe.settings import GapSpringsSettings

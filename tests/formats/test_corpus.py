@@ -11,7 +11,7 @@ from cases.start import stack
 from harness.formats.importing import import_drawing
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from tests.formats.corpus import BASES, TRAITS, Trait, drawn
 

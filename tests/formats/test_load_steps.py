@@ -18,7 +18,8 @@ from harness.formats.registry import BY_SUFFIX
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
-from harness.model.method import Answer, load_method
+from harness.model.method import Answer
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall
 from harness.model.result import Result, result_of
 from methods.fe.settings import GapSpringsSettings

@@ -31,7 +31,7 @@ from harness.formats.registry import BY_SUFFIX
 from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.geometry import shapes_of
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.result import Result, result_of
 from harness.model.wall import Wall
 

@@ -21,7 +21,8 @@ from harness.model.case import Case, CaseFile, read_case
 from harness.model.errors import InputError
 from harness.model.foreign.result_document import answer_from_file
 from harness.model.json_text import read_json
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall, read_wall, wall_json
 from harness.model.result import Result, result_of
 from tests.fuzz import documents

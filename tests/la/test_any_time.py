@@ -8,7 +8,8 @@ import pytest
 
 from benchmarks.la_any_time import timed
 from harness.engine.judge import judge
-from harness.model.method import Finding, OutOfTime, Status, load_method
+from harness.model.method import Finding, OutOfTime, Status
+from harness.model.method_registry import load_method
 from harness.model.result import result_of
 from methods.la.sources import SOURCES
 from methods.proof.search.window_search import WindowSearch

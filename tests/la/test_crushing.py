@@ -18,7 +18,8 @@ from harness.engine.judge import answered, judge
 from harness.engine.symmetry import VIEWS
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import Finding, load_method, method_names
+from harness.model.method import Finding
+from harness.model.method_registry import load_method, method_names
 from harness.model.result import residual_of
 from harness.model.wall import Wall
 from methods.numerics.stress_blocks import block_dissipation, greatest_by_chords

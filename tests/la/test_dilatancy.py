@@ -14,7 +14,8 @@ from harness.model.build import build
 from harness.model.case import case_folders, read_case, shipped_cases
 from harness.model.errors import InputError
 from harness.model.joint_law import JointLaw
-from harness.model.method import Answer, Finding, check_takes, load_method, method_names
+from harness.model.method import Answer, Finding
+from harness.model.method_registry import check_takes, load_method, method_names
 from harness.model.result import result_of
 from harness.model.wall import Wall
 from tests.walls import assembly, running_bond, wall_data

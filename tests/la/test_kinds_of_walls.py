@@ -11,7 +11,8 @@ from cases.families import wall_21
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import read_case
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.literature.solvers import FromFiniteElements

@@ -13,7 +13,8 @@ from harness.engine.judge import judge
 from harness.engine.worker import Task
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import result_of
 from harness.model.wall import Wall
 from tests.walls import PUSH, assembly, running_bond

@@ -19,7 +19,7 @@ from harness.model.bars import ARRAYS, Bars
 from harness.model.build import build
 from harness.model.details import BAR_FORCES
 from harness.model.errors import InputError
-from harness.model.method import check_takes, load_method, method_names, methods_with
+from harness.model.method_registry import check_takes, load_method, method_names, methods_with
 from harness.model.reading import parse_wall, wall_json
 from harness.model.support_reactions import out_of_balance, support_reactions
 from harness.model.wall import Wall

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.joint_law import JointLaw
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.core.flexibility import Compliance
 from methods.la.search import LimitAnalysis

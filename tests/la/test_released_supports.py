@@ -16,7 +16,8 @@ from harness.engine.judge import answered, judge
 from harness.engine.residuals import block_sums
 from harness.model.bars import bar_tensions
 from harness.model.errors import InputError
-from harness.model.method import Finding, load_method
+from harness.model.method import Finding
+from harness.model.method_registry import load_method
 from methods.la.core.reaction import ExtremeReaction, extreme_reaction
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, data

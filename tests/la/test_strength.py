@@ -17,7 +17,8 @@ import pytest
 from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import Finding, load_method
+from harness.model.method import Finding
+from harness.model.method_registry import load_method
 from harness.model.result import Judgement, Result, residual_of
 from harness.model.wall import Wall
 from methods.la.core.exact import close_tight

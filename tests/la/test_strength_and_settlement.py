@@ -16,7 +16,8 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.components import components_of
 from harness.model.errors import InputError
-from harness.model.method import Answer, Method, check_takes, load_method, method_names, methods_with
+from harness.model.method import Answer, Method
+from harness.model.method_registry import check_takes, load_method, method_names, methods_with
 from harness.model.wall import Wall
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem

@@ -19,7 +19,8 @@ from harness.model.build import build
 from harness.model.components import components_of
 from harness.model.details import BAR_FORCES
 from harness.model.errors import InputError
-from harness.model.method import Finding, check_takes, load_method, method_names, methods_with
+from harness.model.method import Finding
+from harness.model.method_registry import check_takes, load_method, method_names, methods_with
 from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
 from methods.la.core.problem import make_problem

@@ -14,7 +14,8 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.components import analysed_apart, components_of, joined, joints_of
 from harness.model.details import MOVING_FORCES
-from harness.model.method import Answer, Finding, OutOfTime, Status, load_method
+from harness.model.method import Answer, Finding, OutOfTime, Status
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from tests.walls import assembly, stack
 

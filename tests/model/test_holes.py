@@ -14,7 +14,7 @@ from harness.model import geometry
 from harness.model.assembly import polygon_area
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.repair import repair
 from harness.model.rings import ringed, rings_of
 from harness.model.wall import Wall

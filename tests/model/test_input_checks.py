@@ -11,7 +11,7 @@ import pytest
 from harness.engine.judge import answered
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall, wall_json
 from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
 from harness.model.wall import Wall

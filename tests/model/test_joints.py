@@ -11,7 +11,8 @@ import pytest
 from harness.model.build import Built, build
 from harness.model.contacts import JointLimits, find_contacts
 from harness.model.errors import InputError
-from harness.model.method import Finding, load_method
+from harness.model.method import Finding
+from harness.model.method_registry import load_method
 from harness.model.reading import read_wall
 from harness.model.wall import Wall
 from tests.walls import running_bond, wall_data

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from drystone.cli.main import main
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.repair import repair
 from harness.model.wall import Detection, Wall
 from tests.walls import running_bond, wall_data

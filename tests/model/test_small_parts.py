@@ -18,7 +18,7 @@ from harness.model.errors import InputError
 from harness.model.inspection import inspect
 from harness.model.load_cases import _count
 from harness.model.load_fields import Loads
-from harness.model.method import check_takes, load_method
+from harness.model.method_registry import check_takes, load_method
 from harness.model.reading import parse_wall, read_wall
 from harness.model.repair import _met, _once
 from harness.model.units import KILONEWTONS, unit_weight_in_kn_m3

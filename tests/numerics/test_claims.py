@@ -10,7 +10,8 @@ import pytest
 
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.reading import read_wall
 from methods.numerics.claims import at_limit
 from tests.known_walls import WALLS

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from tests.walls import assembly, stack
 
 

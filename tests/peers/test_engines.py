@@ -12,7 +12,8 @@ import pytest
 
 import drystone
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from tests.walls import assembly, stack
 
 needs_opensees = pytest.mark.skipif(find_spec("openseespy") is None, reason="the extra opensees is missing")

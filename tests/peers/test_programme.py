@@ -11,7 +11,8 @@ import drystone
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.method import Finding, Status, check_takes, listed_methods, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import check_takes, listed_methods, load_method
 from harness.model.wall import Wall
 from methods.peers.programme import collapse_programme
 from tests.la.test_strength_and_settlement import with_strength

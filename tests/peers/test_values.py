@@ -16,7 +16,8 @@ from benchmarks.peers import claim_of
 from drystone.bench import Speed, rows_of, wall_set
 from harness.model.assembly import Assembly
 from harness.model.comparison import Certified
-from harness.model.method import Answer, Status, load_method
+from harness.model.method import Answer, Status
+from harness.model.method_registry import load_method
 from harness.model.proof import Standing
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column

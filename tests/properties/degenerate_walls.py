@@ -21,7 +21,8 @@ from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Finding, Method, Status, load_method
+from harness.model.method import Finding, Method, Status
+from harness.model.method_registry import load_method
 from harness.model.result import Result
 from tests.exact_programme import greatest_multiplier
 from tests.properties.degenerate_kinds import KINDS, Rng

@@ -11,7 +11,8 @@ from benchmarks.walls import drawn
 from harness.engine.judge import answered
 from harness.engine.symmetry import beside, renumbered
 from harness.model.assembly import Assembly
-from harness.model.method import Status, load_method
+from harness.model.method import Status
+from harness.model.method_registry import load_method
 from tests.exact_programme import greatest_multiplier
 from tests.properties.degenerate_kinds import KINDS, Rng, any_base, wall
 from tests.properties.degenerate_walls import METHODS, Tally, made, violations

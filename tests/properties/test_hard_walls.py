@@ -12,7 +12,7 @@ from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS, renumbered, turned
 from harness.model.assembly import Assembly
 from harness.model.build import build
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from tests.walls import assembly, running_bond
 

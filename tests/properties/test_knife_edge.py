@@ -9,7 +9,8 @@ import pytest
 from benchmarks.knife_edge import KINDS, Edge, edges, verdict
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
-from harness.model.method import Finding, Status, load_method, prepared
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method, prepared
 from harness.model.reading import read_wall
 
 INPUTS = Path(__file__).parents[1] / "data" / "knife-edge"

@@ -7,7 +7,7 @@ import pytest
 
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from tests.walls import assembly, running_bond
 
 GRID = (512_345.0, 4_512_345.0)

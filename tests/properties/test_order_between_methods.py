@@ -13,7 +13,8 @@ from benchmarks.walls import irregular_wall
 from harness.engine.judge import answered
 from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from tests.walls import assembly
 
 BOUND = 1e-7

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from harness.engine.judge import answered
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from tests.walls import assembly, running_bond
 
 EXACT = 1e-9

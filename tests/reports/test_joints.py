@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.model.case import Case, read_case, shipped_cases
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.result import Result, result_of
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.svg import inline

@@ -10,7 +10,7 @@ import pytest
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.comparison import CaseResults
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from reports.page.learn import BlockAnswers, block_answers, render
 from tests.reports import samples

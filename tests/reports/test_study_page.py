@@ -9,7 +9,8 @@ import pandas as pd
 
 from harness.engine.sweep import statistics
 from harness.engine.sweep.frame import tidy
-from harness.model.method import Traits, load_method
+from harness.model.method import Traits
+from harness.model.method_registry import load_method
 from reports.charts.heat import shade
 from reports.charts.study_findings import answer, findings
 from reports.charts.styles import mark_named

@@ -7,7 +7,8 @@ import itertools
 import shapely
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from harness.model.method import Traits, load_method, method_names
+from harness.model.method import Traits
+from harness.model.method_registry import load_method, method_names
 from harness.model.result import Result
 from reports.charts import charts, styles
 from reports.page import build

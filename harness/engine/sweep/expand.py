@@ -22,7 +22,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.content import hash_of
 from harness.model.errors import InputError
-from harness.model.method import load_method
+from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall, validate, wall_json
 from harness.model.wall import Wall
 

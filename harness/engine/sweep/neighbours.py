@@ -21,7 +21,8 @@ from harness.engine.store import Store
 from harness.engine.sweep.expand import SweepRun
 from harness.engine.sweep.running import Row
 from harness.model.assembly import Assembly, IntArray
-from harness.model.method import Finding, Status, load_method
+from harness.model.method import Finding, Status
+from harness.model.method_registry import load_method
 from harness.model.result import relative_velocities
 
 Make = Callable[[Sequence[SweepRun]], list[Row]]

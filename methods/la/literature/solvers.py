@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.method import Answer, Finding, Status, load_method
+from harness.model.method import Answer, Finding, Status
+from harness.model.method_registry import load_method
 from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
