@@ -118,7 +118,7 @@ def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
         found.append(
             (
                 f"{result.method}: the wall at the end of the release.",
-                inline(displaced_drawing(item.case, carried(item.case.assembly, frames[-1]))),
+                inline(displaced_drawing(item.case.assembly, item.case.id, carried(item.case.assembly, frames[-1]))),
             )
         )
     return found

@@ -77,7 +77,7 @@ def frames(case: Case, result: Result) -> list[Image.Image]:
     if followed is not None:
         places = [carried(assembly, moved) for moved in followed]
         box = _box(assembly, places)
-        return [_picture(case, result, displaced_drawing(case, outlines), box) for outlines in places]
+        return [_picture(case, result, displaced_drawing(assembly, case.id, outlines), box) for outlines in places]
     # The square of time lets the blocks move ever faster, as in a collapse.
     mechanism = np.asarray(result.mechanism, dtype=float)
     scale = _GREATEST * shapes.amplitude(assembly, mechanism)

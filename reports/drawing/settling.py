@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import carried
 from reports.drawing.figures import COLUMN, PAGE, style
 from reports.drawing.looks import COLOURS
+from reports.drawing.plot import plot
+from reports.drawing.wall_drawing import displaced_drawing
 
 BEYOND = 1.5
 """Multiple of the displacement from which the last reaction is constant, up to which paths are drawn."""
@@ -68,11 +69,12 @@ def settled_figure(
         curve.set_xlabel(labels[0])
         curve.set_ylabel(labels[1])
         curve.grid(linewidth=0.3)
-        for polygon, fixed in zip(carried(assembly, places), assembly.fixed, strict=True):
-            shade = 0.35 if fixed else 0.08
-            wall.add_patch(Polygon(polygon, facecolor=(0, 0, 0, shade), edgecolor=COLOURS["ink"], linewidth=0.5))
+        polygons = carried(assembly, places)
+        corners, room = np.concatenate(polygons), 0.02 * assembly.length_scale
+        wall.update_datalim([corners.min(axis=0) - room, corners.max(axis=0) + room])
         wall.autoscale_view()
         wall.set_aspect("equal")
+        plot(wall, displaced_drawing(assembly, "the wall", polygons))
         wall.set_axis_off()
         wall.set_title(f"the wall at {displacement[-1]:.5g}")
     return page

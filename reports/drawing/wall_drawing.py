@@ -59,10 +59,10 @@ def plain_wall(assembly: Assembly, units: Units, name: str) -> DisplayList:
     return drawn
 
 
-def displaced_drawing(case: Case, polygons: list[FloatArray]) -> DisplayList:
-    """Blocks of a case at other places (k, 2) [length]."""
-    drawn = DisplayList(Frame.of(case.assembly), f"Displaced blocks of {case.id}")
-    drawn.parts.extend(_stones(drawn.frame, case.assembly, polygons, "moves"))
+def displaced_drawing(assembly: Assembly, name: str, polygons: list[FloatArray]) -> DisplayList:
+    """Blocks of a wall of this name at other places (k, 2) [length]."""
+    drawn = DisplayList(Frame.of(assembly), f"Displaced blocks of {name}")
+    drawn.parts.extend(_stones(drawn.frame, assembly, polygons, "moves"))
     return drawn
 
 

@@ -19,6 +19,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+import drystone
 from cases.start import stack as column
 from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
@@ -29,6 +30,7 @@ from reports.drawing.animate import frames
 from reports.drawing.display_list import Frame
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.looks import COLOURS, LOOKS, css
+from reports.drawing.settling import settled_figure
 from reports.drawing.svg import inline
 from reports.drawing.wall_check_figure import inspected_figure
 from reports.drawing.wall_drawing import wall_drawing
@@ -364,3 +366,17 @@ def test_a_page_draws_in_the_colours_of_its_style_sheet_and_a_file_in_its_own():
     assert "svg .stone { fill: var(--paper); stroke: var(--ink);" in page
     assert f"stroke: {COLOURS['ink']};" in file
     assert "var(" not in file
+
+
+def test_a_wall_that_has_moved_is_drawn_with_its_holes_and_without_their_cuts():
+    """Its stones are those of every drawing: an outline and a hole are two rings."""
+    stone = {"id": "stone", "polygon": [[0, 0], [2, 0], [2, 2], [0, 2]]}
+    hole = [[0.5, 0.5], [1.5, 0.5], [1.5, 1.5], [0.5, 1.5]]
+    ground = {"id": "ground", "polygon": [[0, -1], [3, -1], [3, 0], [0, 0]], "fixed": True}
+    blocks = [ground, stone | {"holes": [hole]}]
+    wall = drystone.build_wall({"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": blocks})
+    places = np.array([[0.0, 0.0, 0.0], [0.5, 0.2, -0.2]])
+    ax = settled_figure(wall.assembly, places, (np.array([0.0, 1.0]), np.array([1.0, 0.5]))).axes[1]
+    rings = [len(path.to_polygons()) for drawn in ax.collections for path in drawn.get_paths()]
+    assert rings == [1, 2]
+    assert ax.patches[:] == []
