@@ -18,14 +18,10 @@ from harness.engine.residuals import moving_parts, scaled_to_live_work
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.result import relative_velocities
 
-BROKEN = "broken"
-BREAKING = "breaking"
 
-
-def listed(assembly: Assembly, details: dict[str, Any], name: str) -> BoolArray | str:
-    """(m,) joints that an answer lists under a name; or what is wrong with the list."""
+def listed(assembly: Assembly, numbers: Any, name: str) -> BoolArray | str:
+    """(m,) joints whose numbers an answer lists under a name; or what is wrong with the list."""
     mask = np.zeros(assembly.n_interfaces, dtype=bool)
-    numbers = details.get(name, [])
     if not isinstance(numbers, list) or any(type(p) is not int for p in numbers):
         return f"`{name}` is no list of numbers of joints."
     for p in numbers:

@@ -48,7 +48,7 @@ from typing import Any
 import numpy as np
 
 from harness.engine.bar_checks import tensions_beyond
-from harness.engine.brittle_checks import BREAKING, BROKEN, listed, motion_of_whole
+from harness.engine.brittle_checks import listed, motion_of_whole
 from harness.engine.judge_breaking import judge_breaking
 from harness.engine.judge_dead_load import judge_fall, judge_limit
 from harness.engine.judge_decision import COUNTABLE, NO_FORCES, apart, beyond_prestress, countable, decide, said_of
@@ -144,11 +144,12 @@ def _judge_brittle(
     quantity: str,
 ) -> Judgement:
     """What is said of the finding on a wall with brittle joints, those that the answer calls broken being dry."""
-    broken = listed(assembly, result.details, BROKEN)
+    details = AnswerDetails(result.details)
+    broken = listed(assembly, details.broken, "broken")
     if isinstance(broken, str):
         return said_of(tolerance, False, broken)
     wall = assembly.with_broken(broken)
-    if result.finding is Finding.COLLAPSES and BREAKING in result.details:
+    if result.finding is Finding.COLLAPSES and details.has_breaking:
         return judge_breaking(wall, forces, mechanism, result, tolerance)
     said = _judge_finding(wall, forces, mechanism, result, tolerance, quantity)
     if broken.any():

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from harness.engine.brittle_checks import BREAKING, listed, unused_strength
+from harness.engine.brittle_checks import listed, unused_strength
 from harness.engine.judge_dead_load import shown_to_fall
 from harness.engine.judge_decision import NO_FORCES, apart, beyond_prestress, decide, said_of
 from harness.engine.residuals import force_residuals
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.details import AnswerDetails
 from harness.model.result import Judgement, Result
 
 
@@ -16,7 +17,8 @@ def judge_breaking(
     wall: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
 ) -> Judgement:
     """Collapse at the multiplier at which joints of the wall break: what it bears before, and no longer after."""
-    breaking, multiplier = listed(wall, result.details, BREAKING), result.multiplier
+    multiplier = result.multiplier
+    breaking = listed(wall, AnswerDetails(result.details).breaking, "breaking")
     if isinstance(breaking, str):
         return said_of(tolerance, False, breaking)
     if multiplier is None or not breaking.any():

@@ -179,7 +179,7 @@ def theory_gates(results: CaseResults) -> list[Gate]:
     gates += _bounds_below_states(results, unit)
     gates += [gate for gate in (_moves_no_lower(results, usable, usable[name]) for name in sorted(usable)) if gate]
     # one that takes brittle joints as broken says nothing of the wall as it stands
-    no_equilibrium = bounding or (None if least is not None and least.details.get("broken") else least)
+    no_equilibrium = bounding or (None if least is not None and AnswerDetails(least.details).broken else least)
     if no_equilibrium is not None and no_equilibrium.finding is Finding.FALLS:
         for method, result in usable.items():
             if result.finding is Finding.FALLS:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES, AnswerDetails
+from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, AnswerDetails
 
 if TYPE_CHECKING:
     from harness.model.assembly import Assembly
@@ -157,9 +157,10 @@ def with_bar_forces(answer: Answer, bars: Bars, m: int) -> Answer:
     Columns of its path that have the name of a bar are tensions beyond the prestress, and become whole ones.
     """
     details = dict(answer.details)
-    named = {BAR_FORCES: answer.forces, DEAD_BAR_FORCES: details.get("dead_forces")}
+    found = AnswerDetails(answer.details)
+    named = {BAR_FORCES: answer.forces, DEAD_BAR_FORCES: found.dead_forces}
     details |= {name: tensions(bars, np.asarray(all_)).tolist() for name, all_ in named.items() if all_ is not None}
-    details |= {name: details[name][:m] for name in ("live_forces", "dead_forces", MOVING_FORCES) if name in details}
+    details |= {name: forces[:m] for name, forces in found.contact_forces.items()}
     whole = {
         path_column(name): [prestress + beyond for beyond in answer.path[path_column(name)]]
         for name, prestress in zip(bars.names, bars.prestress.tolist(), strict=True)

@@ -145,6 +145,21 @@ class AnswerDetails:
         return "with_strength" in self.data
 
     @property
+    def broken(self) -> Any:
+        """Of walls with brittle joints: numbers of those that the answer takes as broken; none where it names none."""
+        return self.data.get("broken", [])
+
+    @property
+    def breaking(self) -> Any:
+        """Of collapses with brittle joints: numbers of those that break at the multiplier."""
+        return self.data.get("breaking")
+
+    @property
+    def has_breaking(self) -> bool:
+        """Whether anything stands in place of these numbers."""
+        return "breaking" in self.data
+
+    @property
     def live_forces(self) -> Any:
         """Of loads without end: (m, 3) contact forces that balance the live load alone [force]."""
         return self.data.get("live_forces")
@@ -163,6 +178,11 @@ class AnswerDetails:
     def moving_forces(self) -> Any:
         """Of measured motions: (m, 3) contact forces that were measured with the mechanism [force]."""
         return self.data.get(MOVING_FORCES)
+
+    @property
+    def contact_forces(self) -> dict[str, Any]:
+        """Of every method: the contact forces among these, by their name in the details."""
+        return {name: self.data[name] for name in ("live_forces", "dead_forces", MOVING_FORCES) if name in self.data}
 
     @property
     def lowest_moving(self) -> float | None:

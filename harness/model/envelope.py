@@ -13,6 +13,7 @@ from typing import Any
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
+from harness.model.details import AnswerDetails
 from harness.model.method import Finding, Status
 from harness.model.result import Result, residual_of
 from harness.model.result_texts import answer_text
@@ -78,7 +79,7 @@ class Envelope:
     @property
     def by_residual(self) -> bool:
         """Whether residual multipliers decide, because the joints have cohesion or tensile strength."""
-        return any("without_strength" in result.details for result in self.results)
+        return any(AnswerDetails(result.details).has_without_strength for result in self.results)
 
     @property
     def _sizes(self) -> list[float | None]:
