@@ -1,0 +1,124 @@
+"""The house holds: no import cycles, no private names of others, each thing made in one place, abilities declared."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import grimp
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROOMS = ("drystone", "harness", "methods", "cases", "reports")
+
+
+@cache
+def parsed() -> dict[str, ast.Module]:
+    """The modules of the house, by their path from its root."""
+    paths = sorted(path for room in ROOMS for path in (ROOT / room).rglob("*.py"))
+    return {str(path.relative_to(ROOT)): ast.parse(path.read_text(encoding="utf-8")) for path in paths}
+
+
+def nodes(*rooms: str) -> Iterator[tuple[str, ast.AST]]:
+    """Every node of the modules of some rooms, with the place of its module."""
+    for place, module in parsed().items():
+        if place.startswith(rooms or ROOMS):
+            yield from ((place, node) for node in ast.walk(module))
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_two_packages_or_modules_import_each_other(room: str):
+    """Be it inside a function; imports for types alone run never, so they may."""
+    graph = grimp.build_graph(*ROOMS, cache_dir=None, exclude_type_checking_imports=True)
+    packages = [room, *graph.find_descendants(room)]
+    breakers = [graph.nominate_cycle_breakers(package) for package in packages]
+    assert sorted(arrow for found in breakers for arrow in found) == []
+
+
+def test_no_module_imports_a_private_name():
+    private = [
+        f"{place}: from {node.module} import {alias.name}"
+        for place, node in nodes()
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if (alias.name.startswith("_") and not alias.name.startswith("__"))
+        or any(part.startswith("_") and not part.startswith("__") for part in (node.module or "").split("."))
+    ]
+    assert private == []
+
+
+MADE = {
+    "Answer": ("methods/", "harness/model/", "harness/engine/", "drystone/skeletons/"),
+    "Result": ("harness/model/result.py",),
+    "Comparison": ("harness/engine/verdict.py", "drystone/comparing.py"),
+    "ComparisonRun": ("harness/engine/compare.py",),
+    "Judgement": ("harness/engine/",),
+    "code_version": ("harness/engine/run.py", "harness/engine/provenance.py", "harness/engine/cluster.py"),
+}
+"""What is made of parts, or stands for the code in a run's key, and where. Two classes are called `Comparison`."""
+
+
+def _called(node: ast.AST) -> str:
+    """The last name of what is called; empty where nothing is."""
+    return ast.unparse(node.func).split("[")[0].split(".")[-1] if isinstance(node, ast.Call) else ""
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_each_thing_is_made_in_one_place(name: str):
+    places = {place for place, node in nodes() if _called(node) == name}
+    assert places
+    assert [place for place in places if not place.startswith(MADE[name])] == []
+
+
+def test_shapes_of_a_wall_are_drawn_by_the_display_list_alone():
+    """One module draws polygons with matplotlib and one writes them as SVG; files of walls are data (`exporting`)."""
+    shapes = ("matplotlib.patches", "matplotlib.collections", "matplotlib.path")
+    by_matplotlib = {
+        place
+        for place, node in nodes()
+        if (isinstance(node, ast.ImportFrom) and node.module in shapes) or _called(node) == "add_patch"
+    }
+    assert by_matplotlib == {"reports/drawing/plot.py"}
+    as_svg = {
+        place
+        for place, node in nodes("reports/drawing", "drystone", "harness", "methods")
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and "<path" in node.value
+    }
+    assert as_svg == {"reports/drawing/svg.py", "reports/drawing/looks.py", "harness/formats/exporting.py"}
+
+
+ASKED_OF_OTHERS = {
+    "harness/model/json_text.py: os",
+    "harness/model/reading.py: annotation",
+    "harness/model/writing.py: error",
+    "harness/formats/dxf.py: holder",
+    "harness/formats/dxf.py: entity",
+}
+"""Objects of the standard library and of ezdxf that may lack an attribute, as flags of other systems."""
+
+
+def test_what_an_object_may_do_is_declared_and_not_asked_by_getattr():
+    asked = {
+        f"{place}: {ast.unparse(node.args[0])}"
+        for place, node in nodes()
+        if _called(node) == "hasattr" or (_called(node) == "getattr" and isinstance(node, ast.Call) and node.args[2:])
+    }
+    assert asked == ASKED_OF_OTHERS
+
+
+def _reads_details(node: ast.AST) -> bool:
+    """Whether it asks an answer's details for a name."""
+    match node:
+        case ast.Subscript(value=of) | ast.Call(func=ast.Attribute(value=of, attr="get" | "pop" | "setdefault")):
+            return ast.unparse(of).split(".")[-1] == "details"
+        case ast.Compare(ops=[ast.In() | ast.NotIn()], comparators=[of]):
+            return ast.unparse(of).split(".")[-1] == "details"
+    return False
+
+
+def test_only_typed_readers_know_the_names_of_details():
+    readers = {place for place, node in nodes("harness", "reports", "drystone", "cases") if _reads_details(node)}
+    typed = {"harness/model/displaced.py", "harness/model/load_steps.py"}
+    assert readers == typed | {"harness/model/foreign/result_document.py"}
