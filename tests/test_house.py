@@ -49,6 +49,33 @@ def test_no_module_imports_a_private_name():
     assert private == []
 
 
+PRIVATE = {
+    "harness/engine/worker.py: os._exit",  # documented: ends a child without what its parent has registered
+    "methods/de/engines/sequential_impulses.py: Rows._make",  # of named tuples, documented
+    "methods/dummy.py: os._exit",
+    "methods/numerics/forks.py: os._exit",
+    "methods/de/engines/pymunk_joints.py: arbiter._arbiter",  # the impulse of each contact point, not of the pair alone
+    "methods/peers/cra.py: native._CRA_OPTIONS",  # the tolerances that its own solver takes
+}
+"""Private names of libraries that nothing public stands for, and those that are public in spite of their name."""
+
+
+def test_no_private_name_is_asked_of_what_another_module_made():
+    """Objects of one class may ask each other."""
+    asked = set()
+    for place, module in parsed().items():
+        used = [node for node in ast.walk(module) if isinstance(node, ast.Attribute)]
+        own = {node.attr for node in used if isinstance(node.ctx, ast.Store) and ast.unparse(node.value) == "self"}
+        fields = [node.target for node in ast.walk(module) if isinstance(node, ast.AnnAssign)]
+        own |= {field.id for field in fields if isinstance(field, ast.Name)}
+        own |= {node.name for node in ast.walk(module) if isinstance(node, ast.FunctionDef)}
+        for node in used:
+            private = node.attr.startswith("_") and not node.attr.startswith("__") and node.attr not in own
+            if private and ast.unparse(node.value) not in ("self", "cls"):
+                asked.add(f"{place}: {ast.unparse(node)}")
+    assert asked == PRIVATE
+
+
 MADE = {
     "Answer": ("methods/", "harness/model/", "harness/engine/", "drystone/skeletons/"),
     "Result": ("harness/model/result.py",),

@@ -189,10 +189,9 @@ def _make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
 @contextmanager
 def _with_children() -> Iterator[None]:
     """Let this process start children although Dask's nanny made it a daemon: they end with it by themselves."""
-    config = multiprocessing.current_process()._config  # type: ignore[attr-defined]
-    before = config.get("daemon", False)
-    config["daemon"] = False
+    process = multiprocessing.current_process()
+    before, process.daemon = process.daemon, False
     try:
         yield
     finally:
-        config["daemon"] = before
+        process.daemon = before
