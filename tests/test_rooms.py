@@ -147,6 +147,29 @@ def test_no_module_holds_an_instance_of_options():
     assert held == TABLES
 
 
+def test_no_module_of_the_methods_holds_a_group_of_numbers_by_name():
+    """That would be a tuning object of another kind: a mapping, or a class without fields."""
+    groups = []
+    for path, module in modules():
+        if not path.is_relative_to(ROOT / "methods"):
+            continue
+        for line in module.body:
+            body = line.body if isinstance(line, ast.ClassDef) else [line]
+            for part in body:
+                value = part.value if isinstance(part, ast.Assign | ast.AnnAssign) else None
+                in_class = isinstance(line, ast.ClassDef) and isinstance(part, ast.Assign)
+                mapping = isinstance(value, ast.Dict) and any(
+                    isinstance(key, ast.Constant) and isinstance(key.value, str) for key in value.keys
+                )
+                numbers = [node for node in ast.walk(value) if _is_number(node)] if in_class or mapping else []
+                groups += [f"{path.relative_to(ROOT)}: {ast.unparse(part)}" for _ in numbers[:1]]
+    assert groups == ["methods/dummy.py: tolerance = 1e-09"]
+
+
+def _is_number(node: ast.AST) -> bool:
+    return isinstance(node, ast.Constant) and type(node.value) in (int, float)
+
+
 def test_no_default_of_an_option_is_read_from_its_class():
     """Read so, it would be the same for all who pass another."""
     parsed = modules()

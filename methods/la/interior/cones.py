@@ -16,9 +16,6 @@ from harness.model.joint_law import block_diagonal
 from methods.numerics.optional import optional
 from methods.numerics.stress_blocks import BlockLimit, crushing_force, kinematic_multiplier
 
-_ACCURATE = {"CLARABEL": {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12, "tol_ktratio": 1e-9}}
-"""Options of the cone solver: the judge holds its forces to 1e-9."""
-
 
 def greatest_by_cones(
     assembly: Assembly, dead: FloatArray, live: FloatArray, most: float = np.inf, solver: str = "CLARABEL"
@@ -45,7 +42,9 @@ def greatest_by_cones(
     programme = cvxpy.Problem(cvxpy.Maximize(multiplier), [balance, yields, *blocks, *limit])
     with warnings.catch_warnings():  # cvxpy warns of a status that is looked at here
         warnings.filterwarnings("ignore", message="Solution may be inaccurate", category=UserWarning)
-        programme.solve(solver=solver, **_ACCURATE.get(solver, {}))
+        # the judge holds the forces to 1e-9
+        fine = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12, "tol_ktratio": 1e-9}
+        programme.solve(solver=solver, **(fine if solver == "CLARABEL" else {}))
     outcome = {"optimal": "optimal", "optimal_inaccurate": "optimal"}.get(programme.status, programme.status)
     if outcome != "optimal":
         return BlockLimit(outcome if outcome in ("infeasible", "unbounded") else "unknown")
