@@ -1,8 +1,8 @@
-"""What each rung of the friction ladder gains: `python -m benchmarks la_ladder [COUNT]`.
+"""What each step of the friction continuation gains: `python -m benchmarks friction_continuation [COUNT]`.
 
-Of COUNT (40) coursed and COUNT irregular random walls those of up to 30 blocks, on which all rungs are tried. Only
-central paths and the ladder are searched: with all rungs, without each of them, and without any. A rung gains on a wall
-if the search ends higher without it, and loses if it ends lower.
+Of COUNT (40) coursed and COUNT irregular random walls those of up to 30 blocks, on which all steps are tried. Only
+central paths and the continuation are searched: with all steps, without each of them, and without any. A step gains
+on a wall if the search ends higher without it, and loses if it ends lower.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def least(problem: Problem, newton: NewtonMatrix, ladder: tuple[float, ...]) -> 
 
 
 def suits(wall: Assembly) -> bool:
-    """Whether all rungs are tried on a wall, which has a live load."""
+    """Whether all steps are tried on a wall, which has a live load."""
     return wall.has_live_load and 2 < wall.n_free <= Sizes().few_blocks
 
 
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     count = int([*(sys.argv[1:] if arguments is None else arguments), "40"][0])
     ladders = {"none": ()} | {
-        f"without {rung:g}": tuple(r for r in Sizes().ladder if r != rung) for rung in Sizes().ladder
+        f"without {step:g}": tuple(r for r in Sizes().ladder if r != step) for step in Sizes().ladder
     }
     gains = {name: [0, 0] for name in ladders}
     walls, began = 0, time.process_time()
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             other = least(problem, newton, ladder)
             gains[name][0] += other > whole + LOWER * abs(whole)
             gains[name][1] += other < whole - LOWER * abs(whole)
-    print(f"{walls} walls, {time.process_time() - began:.0f} CPU s\n| rungs | higher | lower |\n|---|---|---|")
+    print(f"{walls} walls, {time.process_time() - began:.0f} CPU s\n| steps | higher | lower |\n|---|---|---|")
     for name, (higher, lower) in gains.items():
         print(f"| {name} | {higher} | {lower} |")
     return 0

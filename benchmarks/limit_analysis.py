@@ -115,7 +115,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"n {assembly.n_free:5d}  m {assembly.n_interfaces:6d}  mu {friction:.2f}  "
             f"associated {measured(associated)} ({associated_known}) {own:7.3f} s, {own / direct:.1f} times Clarabel  "
             f"least known {measured(least)} ({least_known}) {end - middle:7.2f} s, "
-            f"known after {first_below(least, (1.0 + SAME) * value):6.2f} s, within 1 % of it after "
+            f"reached after {first_below(least, (1.0 + SAME) * value):6.2f} s, within 1 % of it after "
             f"{first_below(least, 1.01 * value):6.2f} s, of the bracket {first_below(least, 1.01 * asked):6.2f} s  "
             f"largest residual {max(residuals.values(), default=float('nan')):.0e}",
             flush=True,

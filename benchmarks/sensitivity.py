@@ -1,4 +1,4 @@
-"""How far the multiplier depends on data nobody can know: stiffness ratio, gap points and initial shear.
+"""How far the multiplier depends on unknown data: stiffness ratio, gap points and initial shear.
 
 Run as `python -m benchmarks sensitivity FOLDER`. Writes `fe_sensitivity.csv` and `fe_sensitivity.svg` there, for the
 55-brick wall at friction 0.65. Deterministic: the initial shears come from seeds 0 to 4.

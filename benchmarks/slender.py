@@ -157,7 +157,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=60.0, help="limit of a run")
     parser.add_argument("--least", action="store_true", help="ask limit analysis of arches too")
-    parser.add_argument("--orders", type=int, help="body orders of methods that have them")
+    parser.add_argument("--orders", type=int, help="sweep orders of methods that have them")
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args(arguments)
     pin()

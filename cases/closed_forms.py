@@ -143,7 +143,7 @@ def _two_frictions() -> Iterator[Recipe]:
             gate=True,
         ),
     ]
-    summary = "The paper's single block with a wider gap between the two frictions: the three methods part further."
+    summary = "The paper's single block with a wider gap between the two frictions: the three methods differ more."
     yield recipe("two-frictions", content, references, Remarks(STATICS, summary, (*SUITES, "small")))
 
 

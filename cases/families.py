@@ -111,7 +111,7 @@ def recipes() -> Iterator[Recipe]:
         ]
         if known.fraction:
             summary = (
-                "Above a friction of about 0.57 the methods part: gap springs and distinct elements leave the head "
+                "Above a friction of about 0.57 the methods differ: gap springs and distinct elements leave the head "
                 "joints unloaded, the associated maximum rests on self-stress through them, and the least collapse "
                 "state known falls as friction grows."
             )

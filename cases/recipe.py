@@ -16,7 +16,7 @@ ROUND_OFF = 1e-9
 ROUND_OFF_REASON = "round-off of an exact method"
 
 DE_TOLERANCE = 0.005
-DE_REASON = "damped holds end within 0.5 % on walls: a rigid contact chooses one vertex of the admissible forces"
+DE_REASON = "damped load steps end within 0.5 % on walls: a rigid contact chooses one vertex of the admissible forces"
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def exact(
 
     `scale` is the size of the multiplier that round-off is relative to.
     """
-    reason = f"damped holds end within {100 * relative_de:g} % here"
+    reason = f"damped load steps end within {100 * relative_de:g} % here"
     value = round(value, 14)
     return [
         reference(

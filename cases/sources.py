@@ -20,7 +20,7 @@ Written by `python -m cases.generate` from the `case.toml` files; change those, 
 A disagreement means something else in each table, so they are kept apart: **verification** compares with closed forms
 and proved bounds (a disagreement is an error of ours), **benchmark** with values others computed (a difference between
 codes, or an error of either), **validation** with experiments (a difference between the model and a wall).
-**Regression** holds our own values of this release, so that a change is seen. Gated references make `drystone check`
+**Regression** holds our own values of this release, so that a change is seen. Checked references make `drystone check`
 fail.
 
 Values of kind *finding* say whether the wall stands under its dead load. `at most` stands with values that a better

@@ -1,8 +1,8 @@
 """Methods on frozen sets of walls: how many they answer, how many correctly, how near the least known state, the cost.
 
 A result counts as *answered* if the method ended within its limits with a finding, and as *correct* if the judge has
-accepted it and no gated reference contradicts it. Both are shares of all walls of the set: what is refused, cut off or
-wrong is counted, never left out.
+accepted it and no checked reference contradicts it. Both are shares of all walls of the set: what is refused, stopped
+or wrong is counted, never left out.
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ def rows_of(chosen: WallSet, compared: Comparison, speed: Speed) -> pd.DataFrame
                 "processor": processor,
             }
         )
-    # A gated reference may ask for other settings besides: the first row is that of the method as it is.
+    # A checked reference may ask for other settings besides: the first row is that of the method as it is.
     return pd.DataFrame(rows, columns=list(COLUMNS)).drop_duplicates(["wall", "method"], ignore_index=True)
 
 

@@ -36,7 +36,7 @@ CERTIFICATE = "certificate.json"
 PACKED = ".gz"
 """Ending of the name of a certificate that is compressed, as those of windows are."""
 ROUNDING = 1e-9
-"""Relative part by which the multiplier found, in floats, may lie below what is proved in fractions."""
+"""Relative amount by which the multiplier found, in floats, may lie below what is proved in fractions."""
 
 
 def certificate_of(case: Case) -> Path | None:
@@ -164,7 +164,7 @@ def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
 
 
 def certificate_line(run: Run, result: Result) -> dict[str, Any]:
-    """A row as of a gated reference: the certificate proves its bound, of this wall, and nothing is found below.
+    """A row as of a checked reference: the certificate proves its bound, of this wall, and nothing is found below.
 
     Args:
         run: one of `certificate_runs`.

@@ -34,7 +34,7 @@ class Comparison:
     Attributes:
         walls: the walls, in the order given.
         results: one for each wall and method.
-        run: what the report is made of, theory gates included.
+        run: what the report is made of, statements of theory included.
     """
 
     walls: list[Wall]
@@ -43,7 +43,7 @@ class Comparison:
 
     @property
     def violations(self) -> list[str]:
-        """Sentences about gated references, theory gates and answers that do not hold; empty if all do."""
+        """Sentences about checked references and statements of theory that are not met, and about rejected answers."""
         return violations(self.run)
 
     def to_pandas(self) -> pd.DataFrame:

@@ -28,7 +28,7 @@ class Wall:
     """A wall that is ready to be analysed. In a notebook it draws itself.
 
     Attributes:
-        case: the wall as the engine runs it, with the references it is held against, if it has any.
+        case: the wall as the engine runs it, with the references it is compared with, if it has any.
     """
 
     case: Case

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -74,6 +75,42 @@ def test_no_private_name_is_asked_of_what_another_module_made():
             if private and ast.unparse(node.value) not in ("self", "cls"):
                 asked.add(f"{place}: {ast.unparse(node)}")
     assert asked == PRIVATE
+
+
+LISTED = re.compile(r"^( *)(?:Args|Attributes):\n((?:\1 +.*\n?|\n)*)", re.MULTILINE)
+
+
+def _listed(docstring: str) -> Iterator[str]:
+    """The first names of the lines under Args and Attributes of a docstring."""
+    for _, lines in LISTED.findall(docstring + "\n"):
+        indent = min((len(line) - len(line.lstrip()) for line in lines.split("\n") if line.strip()), default=0)
+        for line in lines.split("\n"):
+            found = re.match(rf" {{{indent}}}((?:\*{{0,2}}\w+(?:, )?)+):", line)
+            yield from (name.strip("* ") for name in found[1].split(",")) if found else ()
+
+
+def _names_of(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
+    """Arguments of a function; of a class what it or an object of it holds, and what it is made of."""
+    if isinstance(node, ast.FunctionDef):
+        given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs, node.args.vararg, node.args.kwarg]
+        return {argument.arg for argument in given if argument}
+    inside = list(ast.walk(node))
+    stored = {part.attr for part in inside if isinstance(part, ast.Attribute) and isinstance(part.ctx, ast.Store)}
+    stored |= {part.id for part in inside if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)}
+    made = [part for part in node.body if isinstance(part, ast.FunctionDef) and part.name == "__init__"]
+    stored |= {name for part in made for name in _names_of(part)}
+    return stored | {part.name for part in inside if isinstance(part, ast.FunctionDef)}
+
+
+def test_docstrings_describe_the_names_that_there_are():
+    wrong = [
+        f"{place}: {node.name}: {name}"
+        for place, node in nodes()
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        for name in _listed(ast.get_docstring(node) or "")
+        if name not in _names_of(node)
+    ]
+    assert wrong == []
 
 
 MADE = {

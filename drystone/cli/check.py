@@ -56,7 +56,7 @@ def check(
     as_json: bool,
     folders: tuple[Path, ...],
 ) -> None:
-    """Hold the methods to their gated references: one line each; exit code 1 on a violation.
+    """Compare the methods with their checked references: one line each; exit code 1 on a violation.
 
     The full tier also checks the certificates beside the cases, in fractions and against the wall.
     """

@@ -35,8 +35,8 @@ from harness.model.table import values
 def diff(sets: tuple[Path, ...], share: float, html: Path | None, junit: Path | None, as_json: bool) -> None:
     """Compare the answers of OLD and NEW: result stores (their last comparison) or baselines.
 
-    Without OLD, NEW is held against the baseline that comes with Drystone. Exit code 1 if an answer is worse, slower by
-    more than the share, or gone.
+    Without OLD, NEW is compared with the baseline that comes with Drystone. Exit code 1 if an answer is worse, slower
+    by more than the share, or gone.
     """
     if len(sets) > 2:
         raise click.UsageError("give one or two stores or baselines")

@@ -73,7 +73,7 @@ def write_junit(name: str, tests: Iterable[TestCase], path: Path) -> None:
 
 
 def tests_of_check(lines: Iterable[dict[str, Any]]) -> Iterator[TestCase]:
-    """The gated references of `drystone check`."""
+    """The checked references of `drystone check`."""
     for line in lines:
         settings = "".join(f" {name}={value}" for name, value in sorted(line["settings"].items()))
         outcome = _held(Verdict(line["verdict"]))
@@ -82,13 +82,13 @@ def tests_of_check(lines: Iterable[dict[str, Any]]) -> Iterator[TestCase]:
 
 
 def tests_of_comparison(compared: ComparisonRun) -> Iterator[TestCase]:
-    """The runs, gated references and statements of theory of `drystone compare`."""
+    """The runs, checked references and statements of theory of `drystone compare`."""
     for item in compared.cases:
         yield from _tests_of_case(item)
 
 
 def _held(verdict: Verdict) -> Outcome:
-    """The outcome of a gated reference."""
+    """The outcome of a checked reference."""
     return "skipped" if verdict is Verdict.NOT_TESTED else "passed" if verdict is Verdict.AGREES else "failure"
 
 

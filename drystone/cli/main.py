@@ -1,4 +1,4 @@
-"""The command `drystone`. Exit codes: 0 done, 1 a gated reference or the judge says no, 2 the input is wrong.
+"""The command `drystone`. Exit codes: 0 done, 1 a reference is not met or an answer rejected, 2 the input is wrong.
 
 Nothing but click is imported until it is known which command is meant.
 """

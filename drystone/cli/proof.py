@@ -48,7 +48,7 @@ def bound(
 
     Columns, rings and small walls have one of a tree, bonded walls one of windows. An output whose name ends in .gz is
     compressed. Where the certificate does not meet the least state known, or there is none, a sentence says how far the
-    bound came and what stopped it. Exit code 1: nothing is proved in fractions, and nothing is written.
+    bound came and why it ended there. Exit code 1: nothing is proved in fractions, and nothing is written.
     """
     from methods.la.find_certificate import find_certificate
     from methods.la.settings import SearchSettings

@@ -170,7 +170,7 @@ def _proofs(compared: ComparisonRun) -> Iterator[str]:
 
 
 def _all_well(gated: int, gates: int) -> str:
-    """What was held against what, where all of it holds; a wall of one's own has no references."""
+    """What was compared with what, where all agrees; a wall of one's own has no references."""
     known = f"All {gated} checked references are met" if gated else "There are no reference values"
     theory = f"all {gates} tested statements of theory are met" if gates else "no statement of theory could be tested"
     return f"{known}; {theory}; the judge rejects no answer."

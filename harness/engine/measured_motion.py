@@ -1,7 +1,7 @@
 """Whether a measured field of velocities can be a motion of the wall, by arithmetic of its own.
 
 A method that measures (flow "approximate") proves its multiplier by forces at rest; its field of velocities is what
-pictures, joint states and comparisons of mechanisms are made of. It is held against the law of the joints: rigid blocks
+pictures, joint states and comparisons of mechanisms are made of. It must obey the law of the joints: rigid blocks
 on supports at rest do not penetrate each other; and where the contact forces of the motion itself are given
 (`details["moving_forces"]`, (m, 3)), a contact that opens carries none of them, and a joint slips only where friction
 is at its limit, against it; strength

@@ -1,4 +1,4 @@
-"""The one way from a run to its result: found in the store or made, judged, held against references, and kept."""
+"""The one way from a run to its result: found in the store or made, judged, compared with references, and kept."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def _word(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
 
 
 def _held(run: Run, result: Result) -> Result:
-    """A judged result as one of its run: held against its references, with the doubts about its wall."""
+    """A judged result as one of its run: compared with its references, with the doubts about its wall."""
     result = result.model_copy(update={"case": run.case.id, "warnings": list(run.case.warnings)})
     comparisons = [compare(reference, result) for reference in run.references]
     return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})

@@ -54,7 +54,7 @@ def plan_case(
 
 
 def gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
-    """The runs that the gated references of a case need, and no others."""
+    """The runs that the checked references of a case need, and no others."""
     needed: dict[tuple[str, str], Run] = {}
     for item in case.file.references:
         if not item.gate or (item.tier == "full" and tier != "full"):

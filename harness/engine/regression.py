@@ -12,7 +12,7 @@ from harness.model.result import Result, Verdict
 
 
 def violations(compared: ComparisonRun) -> list[str]:
-    """Sentences about gated references and theory gates that do not hold, and about answers that the judge rejects.
+    """Sentences about checked references and statements of theory that are not met, and about rejected answers.
 
     A comparison in which no run ended with an answer says so too: it shows nothing.
     """
@@ -33,7 +33,7 @@ def violations(compared: ComparisonRun) -> list[str]:
 
 
 def lines(runs: Sequence[Run], results: Sequence[Result]) -> list[dict[str, Any]]:
-    """One row a gated reference: case, quantity, method, value, reference, tolerance, source, verdict, sentence."""
+    """One row a checked reference: case, quantity, method, value, reference, tolerance, source, verdict, sentence."""
     rows = []
     for run, result in zip(runs, results, strict=True):
         for reference, comparison in zip(run.references, result.comparisons, strict=True):

@@ -88,7 +88,7 @@ class Run:
         case: the wall.
         method, settings: what is asked; settings are those that differ from the defaults.
         limits: of the run; None: it has none, which only a run in this process can.
-        references: it is held against these.
+        references: it is compared with these.
         given: motions found on neighbouring walls, which it takes up in place of a search of its own.
         processes: that it may use side by side; they change no answer.
         kept: whether its result may be kept: not where the method is an object that is not installed.

@@ -1,4 +1,4 @@
-"""Results held against references and against theory."""
+"""Results compared with references and with statements of theory."""
 
 from __future__ import annotations
 

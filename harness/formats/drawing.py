@@ -42,7 +42,7 @@ PLANES = {"xz": (0, 2, 1), "yz": (1, 2, 0), "xy": (0, 1, 2)}
 _SAME_OUTLINE = 0.98
 """Two outlines whose common area is at least this part of their union are one outline drawn twice.
 
-A second pass of a CAD program, or a hatch over its border, differs by rounding only; two stones that bear on each other
+A second pass of a CAD program, or a hatch over its border, differs by rounding only; two stones in contact
 share none."""
 
 

@@ -39,7 +39,7 @@ _FINE = 0.02
 MOST = 0.95
 """Part of the coordinates that lie on a grid when they are taken for rounded; mended corners lie beside it."""
 NEAR = 0.1
-"""Stones nearer than this part of a stone's size are likely to bear on each other: joints of dry masonry are 5 to 25 mm
+"""Stones nearer than this part of a stone's size are likely to be in contact: joints of dry masonry are 5 to 25 mm
 wide, and its stones 75 to 500 mm high."""
 
 

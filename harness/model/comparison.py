@@ -1,4 +1,4 @@
-"""What the engine hands to the report: cases, their results, and the theory gates that join them."""
+"""What the engine hands to the report: cases, their results, and the statements of theory that relate them."""
 
 from __future__ import annotations
 

@@ -214,7 +214,7 @@ def _lying(
     index = {name: k for k, name in enumerate(names)}
     known = [item for item in joints.interfaces if set(item.between) <= index.keys()]
     faults += faults_of_given(joints, index, fixed)
-    # Blocks that overlap bear on each other once that is mended.
+    # Blocks that overlap are in contact once that is mended.
     pairs = np.concatenate([_joined(known, index), overlapping])
     held = fixed | _beside(polygons, hulls, limits.sight)
     groups = floating_groups(held, pairs)

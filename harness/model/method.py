@@ -104,7 +104,7 @@ class Traits(BaseModel):
     Attributes:
         caption: what its multiplier is, in a few words for the head of a column; empty: nothing is said.
         brackets: its multiplier is measured and lies between the ends of its bracket, a load held and one that moved;
-            shown as the bracket, and held against exact values to `accuracy`.
+            shown as the bracket, and compared with exact values to `accuracy`.
         accuracy: stated relative accuracy of a multiplier that is measured between two loads.
         resolution: difference, in units of the multiplier, to which its bracket is narrowed, where that is coarser.
         held_accuracy: how far, in units of the multiplier, a held load can lie above what rigid blocks bear, where

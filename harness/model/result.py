@@ -82,7 +82,7 @@ class Judgement(BaseModel):
 
 
 class Comparison(BaseModel):
-    """One result held against one reference."""
+    """One result compared with one reference."""
 
     model_config = ConfigDict(defer_build=True, extra="forbid")
     reference: str

@@ -36,7 +36,7 @@ def load_impulses() -> None:
 
 
 class DampedHolds(Solver):
-    """Damped holds of a wall at frozen geometry, bracketed over sweep orders."""
+    """Damped load steps of a wall at frozen geometry, bracketed over sweep orders."""
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
@@ -64,7 +64,7 @@ class DampedHolds(Solver):
 
 
 class MujocoHolds(Solver):
-    """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
+    """The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not depend on one engine."""
 
     def solve(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
         """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`.
@@ -92,7 +92,7 @@ class MujocoHolds(Solver):
 
 
 class Box2dHolds(Solver):
-    """The holds, the bracket and the orders of `de` on Box2D, so that an answer does not hang on one engine."""
+    """The holds, the bracket and the orders of `de` on Box2D, so that an answer does not depend on one engine."""
 
     def solve(self, assembly: Assembly, settings: Box2dSettings) -> Answer:
         """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`.

@@ -36,7 +36,7 @@ DE = Listed(
         marker="d",
     ),
 )
-"""Damped holds of a wall at frozen geometry, bracketed over sweep orders."""
+"""Damped load steps of a wall at frozen geometry, bracketed over sweep orders."""
 
 DE_MUJOCO = Listed(
     name="de-mujoco",
@@ -56,7 +56,7 @@ DE_MUJOCO = Listed(
         line="dashed",
     ),
 )
-"""The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not hang on one engine."""
+"""The holds, the bracket and the orders of `de` on MuJoCo, so that an answer does not depend on one engine."""
 
 DE_BOX2D = Listed(
     name="de-box2d",

@@ -22,7 +22,7 @@ LOOK = 500
 
 
 class HoldSettings(Settings):
-    """How a damped hold is run and judged, and how the collapse multiplier is bracketed.
+    """How a damped load step is run and judged, and how the collapse multiplier is bracketed.
 
     Attributes:
         orders: how many insertion orders of bodies and interfaces are tried; their spread is part of the answer.
@@ -105,7 +105,6 @@ class Box2dSettings(HoldSettings):
         held_residual: above what single precision leaves out of balance in walls of a hundred blocks.
         moving_residual: above `held_residual`.
         force_residual: what single precision leaves to be gained.
-        work: a moved wall is made again from the start, which counts.
     """
 
     iterations: int = Field(default=10, ge=1, le=1000)

@@ -45,7 +45,7 @@ class SoftHoldTuning:
         patience: multiple of the length of a hold that the dead load has.
         away: multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls.
         share: of a small multiplier to which its bracket is narrowed.
-        beyond: first relative rise above a multiplier that could not be told; it doubles until the wall falls.
+        beyond: first relative rise above an undecided multiplier; it doubles until the wall falls.
     """
 
     low: int = 7
@@ -266,7 +266,7 @@ def _better(answer: Answer, again: Answer) -> Answer:
 
 
 def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
-    """The lowest multiplier tried above one that could not be told at which the wall falls; None up to the cap."""
+    """The lowest multiplier tried above an undecided one at which the wall falls; None up to the cap."""
     rise = holds.options.beyond * multiplier
     while multiplier + rise <= cap:
         if holds.hold(multiplier + rise) is State.MOVING:

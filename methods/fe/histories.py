@@ -2,7 +2,7 @@
 
 Real joints remember in which order they slipped. A history commits the shears (T0, s0) every so often along the path:
 never, and at every 1 % of the multiplier; where these two end apart, at every 0.2 % too. What they differ by is scatter
-from data nobody can know.
+from unknown data.
 """
 
 from __future__ import annotations
@@ -228,7 +228,7 @@ def _trace_in_time(
 
 
 def _followed(follower: PathFollower, plan: HistoryPlan, record: PathRecord) -> HistoryResult:
-    """What following a path from where the tracer stands leads to. Raises OutOfTime and SingularTangent as above."""
+    """What following a path from where the follower stands leads to. Raises OutOfTime and SingularTangent as above."""
     model, scale = follower.model, plan.scale
     interval = plan.step * scale or np.inf
     way = follow(

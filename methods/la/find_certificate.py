@@ -70,7 +70,7 @@ class Attempt:
 
     Attributes:
         document: the certificate; None where nothing is proved in fractions.
-        sentence: how far the bound came and what stopped it; empty where it meets the state.
+        sentence: how far the bound came and why it ended there; empty where it meets the state.
     """
 
     document: dict[str, Any] | None
@@ -140,7 +140,7 @@ def beyond(problem: Problem, most: int) -> str:
 def account(
     problem: Problem, multiplier: float, found: Bracket, document: dict[str, Any] | None, seconds: float
 ) -> str:
-    """How far a bracket came in floating point and in fractions, and what stopped it; empty where its end is certified.
+    """How far a bracket came in floating point and in fractions, and why it ended; empty where its end is certified.
 
     Args:
         problem: the scaled wall; multiplier: of the state; found: its bracket; document: of its certificate.

@@ -185,7 +185,7 @@ def _orders(result: Result) -> list[tuple[str, Markup]]:
 
 
 def _starts(result: Result) -> tuple[str, Markup]:
-    """The collapse states that the starts of a search lead to, and the least known after each of them."""
+    """The collapse states that the starts of a search lead to, and the least state found by each of them."""
     details = AnswerDetails(result.details)
     values = details.start_values
     if max(values) - min(values) <= SAME * abs(min(values)):

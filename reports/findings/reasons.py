@@ -1,4 +1,4 @@
-"""Why two methods part on one wall, from their mechanisms and forces: joints, blocks, the work of friction."""
+"""Why two methods differ on one wall, from their mechanisms and forces: joints, blocks, the work of friction."""
 
 from __future__ import annotations
 

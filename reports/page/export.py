@@ -184,7 +184,7 @@ def _field(value: Any) -> Any:
 
 
 def _comparison_frame(run: ComparisonRun) -> pd.DataFrame:
-    """Every result held against a reference, with the columns of comparisons.csv; units in `attrs["units"]`."""
+    """Every result compared with a reference, with the columns of comparisons.csv; units in `attrs["units"]`."""
     return _frame(COMPARISONS, [row for item in run.cases for _, row in compared_rows(item)])
 
 

@@ -259,7 +259,7 @@ def _lowered(ends: tuple[float, float], left: float) -> str:
 
 
 def _to_value(item: CaseResults, method: str) -> float | None:
-    """CPU time after which a search first knew its value [s], of a method that recorded when it found what."""
+    """CPU time after which a search first reached its value [s], of a method that recorded when it found what."""
     found = _result(item, method)
     if found is None or found[1].multiplier is None:
         return None

@@ -1,4 +1,4 @@
-"""Rows of the report's tables of references: every result that is held against one."""
+"""Rows of the report's tables of references: every result that is compared with one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reports.page.tables import Cell, anchor_of, expected_text, plain_cell, refe
 
 @dataclass(frozen=True)
 class HeldRow:
-    """One result held against one reference, ready to print.
+    """One result compared with one reference, ready to print.
 
     Attributes:
         anchor: of the run in the page.

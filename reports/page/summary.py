@@ -86,7 +86,7 @@ def run_in_order(run: ComparisonRun) -> ComparisonRun:
 
 
 def in_order(items: list[CaseResults]) -> list[CaseResults]:
-    """Cases as a reader wants them: their own, the paper's, those on which methods part or fail, the rest."""
+    """Cases as a reader wants them: their own, the paper's, those on which methods differ or fail, the rest."""
     return sorted(items, key=_rank)
 
 

@@ -46,6 +46,7 @@ BANNED = {
     r"\bwhat stopped it\b": "reasons",
     r"\bblocks? rubs?\b": "friction does work",
     r"\bthrown apart\b": "the blocks separate",
+    r"\btracers?\b": "path follower",
 }
 """What is not said, as a regular expression, and what is said in its place."""
 
@@ -54,19 +55,21 @@ PAGES = [
     ROOT / "CONTRIBUTING.md",
     *(path for path in (ROOT / "docs").rglob("*.md") if not {"notes", "generated", "decisions"} & set(path.parts)),
     *(ROOT / "reports" / "templates").rglob("*.j2"),
+    *(ROOT / "reports" / "static").rglob("*.js"),
+    *(ROOT / "cases").rglob("*.toml"),
+    *(path for kind in ("*.md", "*.c", "*.mjs", "*.js") for path in (ROOT / "drystone" / "skeletons").rglob(kind)),
 ]
-CODE = [path for room in ("drystone", "harness", "methods", "reports") for path in (ROOT / room).rglob("*.py")]
+ROOMS = ("drystone", "harness", "methods", "reports", "cases", "examples", "benchmarks")
+CODE = [*(ROOT / "docs").glob("*.py"), *(path for room in ROOMS for path in (ROOT / room).rglob("*.py"))]
 CODED = re.compile(r"`[^`]*`|\]\([^)]*\)")
 """Names in code and targets of links."""
 
 
 def _sentences(path: Path) -> Iterator[str]:
-    """Strings of the code that a reader may meet: of two words and more, and no docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
-            yield from [node.value] if " " in node.value.strip() else []
+    """Strings of the code that a reader may meet, of two words and more. Docstrings are the help of commands too."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
+            yield node.value
 
 
 def _found(text: str) -> list[str]:

@@ -106,7 +106,7 @@ def test_a_loose_brick_stays_on_its_footing_and_the_others_bear_the_load(model: 
     for _ in range(3):
         x += factor.solve(unloaded - tangent @ x)
     assert not x[place : place + 3].any()
-    # One solve would miss the loads by the footing's share, 1e-8.
+    # One solve would miss the loads by the share of the regularisation, 1e-8.
     assert np.abs(tangent @ x - unloaded).max() < 1e-13 * max(1.0, np.abs(x).max())
 
 

@@ -1,4 +1,4 @@
-"""The answer of damped holds whose search was stopped by the time limit: what is shown by then, and no more."""
+"""The answer of damped load steps whose search was stopped by the time limit: what is shown by then, and no more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One damped hold: keep the load, let the wall settle, and judge whether it is held, moves, or cannot be told."""
+"""One damped load step: keep the load, let the wall settle, and judge whether it is held, moves, or is undecided."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class ConvergenceMonitor:
 
     @property
     def rests(self) -> bool:
-        """Whether the residual was small enough at the last two checks and did not grow: a slow motion begins so.
+        """Whether the residual was small enough at the last two checks and did not grow: creep begins so.
 
         Growth below a hundredth of what is small enough is rounding.
         """

@@ -24,7 +24,7 @@ class BracketTuning:
         creeping: accuracy of a search that is no longer cheap: just under collapse a wall creeps, just above it moves
             slowly, and narrower costs much.
         cheap: contact updates up to which a search keeps to the full accuracy.
-        growth: factor on load steps after one that could not be told.
+        growth: factor on load steps after an undecided one.
         patience: multiple of the length of a hold that the dead load has.
         halved: residual of a motion, or live load as a part of the dead load, in residuals that show a motion, up to
             which half of the multiplier would show none.
@@ -52,7 +52,7 @@ class OrderBracket:
         order: name of the insertion order.
         held: highest multiplier held, or None if the wall is not held at zero.
         moving: lowest multiplier at which it moved, or None.
-        undecided: multipliers of holds that could not be told, none of them called held.
+        undecided: multipliers of undecided load steps, none of them called held.
         state: contact state of the engine at `held`.
         moving_residual: of that motion; velocity: (n, 3) its field.
         moving_forces: (m, 3) contact forces of the motion under the dead load alone [force].
@@ -182,7 +182,7 @@ class BracketSearch:
         return end
 
     def _climb(self) -> None:
-        """Load steps until a state moves, or the cap is held; twice as large after each that could not be told.
+        """Load steps until a state moves, or the cap is held; twice as large after each undecided one.
 
         So an upper end is shown before it is narrowed, and is the answer where the time is over.
         """
@@ -236,7 +236,7 @@ class BracketSearch:
     def _raise_upper_end(self, high: float) -> None:
         """The lowest state not held was undecided: find the lowest state above it that moves, by growing steps.
 
-        None is asked below a multiplier that could not be told either.
+        None is asked below an undecided multiplier either.
         """
         found = self.found
         step = self._options.creeping * high

@@ -178,7 +178,7 @@ def load_gapped(wall: GappedWall, greatest: float, step: float, accuracy: float)
 
 
 def _at_rest(model: WallModel, multiplier: float, steps: int) -> Equilibrium:
-    """The equilibrium near no displacement, by Newton, or else by slow motion that freezes its shears in."""
+    """The equilibrium near no displacement, by Newton, or by pseudo-transient relaxation that freezes shears in."""
     factor, still = make_factor(model), np.zeros(model.n_unknowns)
     found = newton(model, factor, still, multiplier, model.history)
     if found.found:

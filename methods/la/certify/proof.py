@@ -46,7 +46,7 @@ class TreeProof:
     """What the tree shows.
 
     Attributes:
-        state: the collapse state of least multiplier that is known after it.
+        state: the collapse state of least multiplier that is found by then.
         lower_bound: scaled multiplier below which there is no collapse state.
         nodes: of the tree, two linear programmes each.
         leaves: slacks held at zero and rates held at zero, (m, 4) each, of every part that was given up.

@@ -59,7 +59,7 @@ class PaperResult:
 
 
 def _determined_system(problem: Problem) -> IntArray:
-    """(n,) interfaces of a kinematically determined system: every block hangs on the supports by one chain of joints.
+    """(n,) interfaces of a kinematically determined system: one chain of joints leads from every block to a support.
 
     The chains prefer joints that face gravity over head joints, and of the two halves of a bed joint the one towards
     which the live load pushes, as the paper guesses the statically active joints of a wall pushed sideways.

@@ -20,8 +20,8 @@ class SearchLimits:
     Attributes:
         starts: central paths of the wall with blocks of other weights.
         failures, draws: draws without a lower value that end a descent, and draws of one at most.
-        descents: lowest states of each source, and of each rung, that are descended from.
-        ladder: factors on friction of the rungs.
+        descents: lowest states of each source, and of each step of the friction continuation, that are descended from.
+        ladder: factors on friction of the steps of the friction continuation.
         nodes: of the tree that may prove the least state.
         certificates: programmes that may bound an unfinished tree as a whole, to rounding.
         leaves: of such a tree that are bounded where the whole takes more.
@@ -51,7 +51,7 @@ class Sizes:
 
     Attributes:
         few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
-            source on both; above, no rungs but those of rough joints, no other weights, and one longer descent.
+            source on both; above, no steps of it but those of rough joints, no other weights, and one longer descent.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree finishes within its nodes.

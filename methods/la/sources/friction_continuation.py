@@ -36,40 +36,40 @@ def with_reduced_friction(problem: Problem, factor: float) -> Problem | None:
 
 @dataclass(frozen=True)
 class FrictionContinuation:
-    """Rungs of lower friction, each with its own path and what the rung before knew.
+    """Steps of lower friction, each with its own path and what the step before found.
 
     Attributes:
-        pool: mechanisms carried from one rung to the next.
-        rough: friction above which the rungs are shares of this instead: much higher, most starts end at self-stress.
-        rough_rungs: friction of the rungs added for joints that are rougher still.
+        pool: mechanisms carried from one step to the next.
+        rough: friction above which the steps are shares of this instead: much higher, most starts end at self-stress.
+        rough_steps: friction of the steps added for joints that are rougher still.
     """
 
     name: ClassVar[str] = "friction continuation"
     pool: int = 24
     rough: float = 1.0
-    rough_rungs: tuple[float, ...] = (1.0, 1.5, 2.25)
+    rough_steps: tuple[float, ...] = (1.0, 1.5, 2.25)
 
     def applies(self, problem: Problem) -> bool:
-        """On every wall; the budget says how many rungs there are."""
+        """On every wall; the budget says how many steps there are."""
         return True
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """States of the mechanisms that were lowest on the last rung."""
+        """States of the mechanisms that were lowest on the last step."""
         below: Search | None = None
-        for friction in self._rungs(search):
+        for friction in self._steps(search):
             if not search.budget.steps_left(search.record.known):
                 break
-            rung = search.varied(replace(search.problem, law=search.problem.law.with_friction(friction)))
-            states = [rung.interior()]
+            step = search.varied(replace(search.problem, law=search.problem.law.with_friction(friction)))
+            states = [step.interior()]
             if below is not None:
-                states += rung.adopt(below, self.pool)
-            rung.descend_from(state for state in states if state is not None)
-            below = rung
+                states += step.adopt(below, self.pool)
+            step.descend_from(state for state in states if state is not None)
+            below = step
         if below is not None:
             yield from search.adopt(below, self.pool)
 
-    def _rungs(self, search: Search) -> list[FloatArray]:
+    def _steps(self, search: Search) -> list[FloatArray]:
         friction = search.problem.friction
         greatest = float(friction.max(initial=0.0))
-        rungs = [factor * np.minimum(friction, self.rough) for factor in search.budget.limits.ladder]
-        return rungs + [np.minimum(friction, most) for most in self.rough_rungs if most < greatest]
+        steps = [factor * np.minimum(friction, self.rough) for factor in search.budget.limits.ladder]
+        return steps + [np.minimum(friction, most) for most in self.rough_steps if most < greatest]

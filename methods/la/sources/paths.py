@@ -1,4 +1,4 @@
-"""States at the ends of central paths: with smoother unloaded joints, as it is, associated, with other weights."""
+"""States at the ends of central paths: with less friction in unloaded joints, as it is, associated, other weights."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ class Factor(Protocol):
     Attributes:
         count: changes since the last factorisation; capacity: how many there may be.
         factorisations: in all; careful: whether the last one chose its pivots among all rows.
-        footed: whether the last one had the footing added, so that solutions are to be refined.
+        is_regularised: whether the last one had the regularisation added, so that solutions are to be refined.
     """
 
     count: int
@@ -59,12 +59,13 @@ class Factor(Protocol):
         """Factorise the tangent in these states afresh.
 
         Args:
-            state: (P,) states; shift: times the inertia, which is added; footing: whether the footing is added.
+            state: (P,) states; shift: times the inertia, which is added.
             careful: asks for pivots among all rows, which keep more digits near a limit point and cost more.
-            pins: displacements that springs of unit stiffness are added to.
+            bordered: displacements that springs of unit stiffness are added to.
+            regularised: whether the regularisation is added.
 
         Raises:
-            SingularTangent: a motion has no stiffness beyond rounding, and neither shift nor footing gives it any.
+            SingularTangent: a motion has no stiffness beyond rounding, nor by shift or regularisation.
         """
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -89,11 +90,11 @@ def make_factor(model: WallModel) -> Factor:
 
 
 def refactor_any(factor: Factor, state: IntArray, careful: bool = False, bordered: Sequence[int] = ()) -> None:
-    """Factorise the tangent in these states afresh, with the footing where it is singular.
+    """Factorise the tangent in these states afresh, with the regularisation where it is singular.
 
     A block that nothing touches, or that balances on an edge, takes no stiffness from its joints. Loads that do no work
-    on such a motion leave the wall in equilibrium all the same, and the footing keeps it where it is: solutions that
-    are refined until the tangent without the footing is met have none of its force (proximal point; Rockafellar, 1976).
+    on such a motion leave the wall in equilibrium all the same, and the regularisation keeps it where it is: solutions
+    that are refined until the tangent without it is met have none of its force (proximal point; Rockafellar, 1976).
     """
     try:
         factor.refactor(state, careful=careful, bordered=bordered)

@@ -27,7 +27,7 @@ class BreakpointTolerances:
             either state, and the choice among near ties may overrun a breakpoint by as much. Compressions that a
             path starts from are at least as large, in block weights.
         rate: rates of breakpoint functions below this share of the fastest gap rate count as zero.
-        soft_rate: the same on pinned pieces, as forces over a motion as long as the displacements so far.
+        soft_rate: the same on pieces with pins, as forces over a motion as long as the displacements so far.
         sure_rate: such a rate, over the fastest velocity, from which its sign in a new direction is beyond doubt.
         broken: slack, as a share of the load scale, up to which a brittle joint is at its strength: rounding of a path
             is less, and the judge accepts ten times as much.
@@ -171,12 +171,12 @@ class LoadRaising:
 
 @dataclass(frozen=True)
 class SoftMotions:
-    """When a piece of the path is soft, so that its motion is pinned in the factor.
+    """When a piece of the path is soft, so that its motion has a pin in the factor.
 
     Attributes:
         velocity: multiple of the first piece's velocity, at the same rate of the multiplier, above which the fastest
-            displacement is pinned.
-        response: the same of the pinned wall's response to the live load, which shows a further soft motion.
+            displacement has a pin.
+        response: the same of the response of the wall with pins to the live load, which shows a further soft motion.
         held: share of the fastest displacement below which the pin no longer holds the motion, and is moved.
         most: pins at most.
     """
@@ -194,11 +194,11 @@ class RefinementTolerances:
     Attributes:
         defect: share of the live load above which a velocity is refined, and the tangent factorised afresh when that no
             longer helps.
-        soft_defect: the same on pinned pieces, as forces over a motion as long as the displacements; soft_accepted:
+        soft_defect: the same on pieces with pins, as forces over a motion as long as the displacements; soft_accepted:
             when refinement no longer helps, above which the tangent is factorised afresh.
         contraction: share of the defect before it that a step must leave at most, or refinement no longer helps.
         steps: at most.
-        doubled: displacements (dimensionless) above which gap rates of pinned pieces are measured in doubled
+        doubled: displacements (dimensionless) above which gap rates of pieces with pins are measured in doubled
             precision: up to there their rounding changes no force by more than 1e-9.
     """
 

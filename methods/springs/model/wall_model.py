@@ -44,8 +44,8 @@ class WallModel:
             compression before anything has moved.
         middle: (P,) shear that a point bears besides its own, as part of the dead load: the middle of a bar's range.
         dead, live: (N,) dimensionless loads.
-        inertia: (N,) dimensionless masses for slow motion.
-        footing: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
+        inertia: (N,) dimensionless masses for pseudo-transient relaxation.
+        regularised: (N,) stiffness of every block against the ground that a singular tangent is factorised with.
         column_start, row_index: CSC pattern of the tangent; slot: (m, 36) where each interface adds to its values.
         force, length, displacement: what one unit inside is worth outside.
         cohesive: (k,) interfaces with a cohesion spring, and then ties and props: the last k of the points, with rows
@@ -202,7 +202,7 @@ class WallModel:
         return out
 
     def added(self, shift: float, regularised: bool) -> FloatArray:
-        """What the diagonal (N,) of the tangent is given: `shift` times the inertia, and the footing if asked."""
+        """What is added to the diagonal (N,) of the tangent: `shift` times the inertia, the regularisation if asked."""
         return shift * self.inertia + (self.regularised if regularised else 0.0)
 
     def tangent(self, state: IntArray, shift: float = 0.0, regularised: bool = False) -> sp.csc_matrix:

@@ -19,10 +19,10 @@ from methods.springs.path.continuation import PathFollower
 
 
 def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
-    """Commit the history where the tracer stands and step `ahead` in the multiplier.
+    """Commit the history where the follower stands and step `ahead` in the multiplier.
 
     Returns:
-        A tracer on the new path, or None when Newton did not settle (the old tracer must then be `refresh`ed).
+        A follower on the new path, or None when Newton did not settle (the old follower must then be `refresh`ed).
     """
     model, factor = follower.model, follower.factor
     options, near = model.options.commits, model.options.breakpoints.force * follower.scale

@@ -7,10 +7,10 @@ When a gap point changes state at a breakpoint, K turns into K + a b' and, with 
 
 which keeps b'v' = b'v: the breakpoint function that was crossed moves on into the new cell (Katzenelson, 1965; Eaves
 and Scarf, 1976), so that a path cannot turn back on itself, and nothing is divided by 1 - b'w, which vanishes at limit
-points. On soft pieces the tangent itself is nearly singular. There the fastest displacement is pinned by a spring, and
-one more for each further soft motion, K + sum e e', and the factor of that is used to solve K v = l live with the first
-of them held (bordering; Keller, 1977). Velocities, rates of the multiplier and of the gaps are then refined to twice
-the working precision.
+points. On soft pieces the tangent itself is nearly singular. There the fastest displacement is held by a pin, a spring,
+and one more for each further soft motion, K + sum e e', and the factor of that is used to solve K v = l live with the
+first of them held (bordering; Keller, 1977). Velocities, rates of the multiplier and of the gaps are then refined to
+twice the working precision.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from methods.springs.model.wall_model import WallModel
 
 @dataclass
 class UnitResponse:
-    """The displacements value + tail (N,) that a unit force at a pin causes in the pinned wall."""
+    """The displacements value + tail (N,) that a unit force at a pin causes in the wall with pins."""
 
     border: int
     value: FloatArray
@@ -42,7 +42,7 @@ class PathDirection:
     Attributes:
         velocity: (N,) v; tail: (N,) its small part beyond working precision; speed: rate l of the multiplier.
         opening_rate, trial_rate: (P,) rates of g and tau.
-        pins: the displacements that are pinned in the factor, the fastest first.
+        bordered: the displacements that have a pin in the factor, the fastest first.
         fine: whether rates are measured in doubled precision.
         elastic: size of v / l on the first piece of the path, with which soft pieces are compared.
         options: of the model.
@@ -89,7 +89,7 @@ class PathDirection:
         raise SingularTangent("the direction of the path was lost to rounding")
 
     def _solve_pinned(self, state: IntArray, careful: bool) -> None:
-        """Solve for the velocity, its fastest displacement pinned where the piece turns out to be soft."""
+        """Solve for the velocity, its fastest displacement with a pin where the piece turns out to be soft."""
         for _ in range(self.options.soft_motions.most):
             before, rising = self.velocity, self.speed
             self.bordered = [int(np.argmax(np.abs(before)))] if self.size > self.options.soft_motions.velocity else []
@@ -99,16 +99,16 @@ class PathDirection:
                 return
 
     def _is_pinned_right(self) -> bool:
-        """Whether a soft piece is pinned, where it moves."""
+        """Whether a soft piece has a pin, where it moves."""
         if not self.bordered:
             return self.size <= self.options.soft_motions.velocity
         return bool(abs(self.velocity[self.bordered[0]]) >= self.options.soft_motions.held * largest(self.velocity))
 
     def _factorise(self, state: IntArray, careful: bool) -> None:
-        """Factorise the tangent, and where a pinned one is still soft, pin the softest motion as well.
+        """Factorise the tangent, and where one with pins is still soft, pin the softest motion as well.
 
-        One without any stiffness left that the live load works on is pinned first: whatever the load does, the wall
-        moves along it. Others without stiffness stay on their footing.
+        One without any stiffness left that the live load works on gets a pin first: whatever the load does, the wall
+        moves along it. Others without stiffness stay on their regularisation.
         """
         while True:
             refactor_any(self.factor, state, careful, self.bordered)
@@ -125,7 +125,7 @@ class PathDirection:
         self.unit_responses = [self._unit_response(border, state) for border in self.bordered[1:]]
 
     def _is_soft(self) -> bool:
-        """Whether the response to the live load shows a soft motion that is not pinned."""
+        """Whether the response to the live load shows a soft motion without a pin."""
         return largest(self.response) > self.options.soft_motions.response * self.elastic
 
     def solve_first(self, state: IntArray) -> None:

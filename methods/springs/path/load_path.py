@@ -32,10 +32,10 @@ def follow(
     jumps: int | None = None,
     committed_up_to: float = np.inf,
 ) -> LoadPath:
-    """Follow a path from where the tracer stands to its end.
+    """Follow a path from where the follower stands to its end.
 
     Args:
-        tracer: the beginning of the path, which is used up.
+        follower: the beginning of the path, which is used up.
         record: receives the path.
         max_events: changes of state after which the path is given up.
         interval: multiplier between two commits of the history; infinite for none.
@@ -75,7 +75,7 @@ def follow(
 
 
 def _committed(follower: PathFollower, interval: float, record: PathRecord) -> PathFollower | None:
-    """The tracer one interval after a commit, by a finite Newton step; None where that does not settle."""
+    """The follower one interval after a commit, by a finite Newton step; None where that does not settle."""
     after = committed_step(follower, interval)
     if after is None:
         follower.refresh()
@@ -93,10 +93,10 @@ def _committed(follower: PathFollower, interval: float, record: PathRecord) -> P
 
 
 def past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFollower, float]:
-    """The tracer to go on with where a path has turned down, and the share of the peak at which to look again.
+    """The follower to go on with where a path has turned down, and the share of the peak at which to look again.
 
     Args:
-        tracer: where the path has turned down; peak: its peak; jumps: how many may still be tried.
+        follower: where the path has turned down; peak: its peak; jumps: how many may still be tried.
 
     Raises:
         SingularTangent: the path cannot be taken up again where it stands.
@@ -109,7 +109,7 @@ def past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFoll
 
 
 def _jump(follower: PathFollower, peak: float) -> PathFollower | None:
-    """The tracer just above the peak, at the equilibrium that the springs come to from where it is; None if at none."""
+    """The follower just above the peak, at the equilibrium that the springs reach from where it is; None if none."""
     options = follower.model.options.jump
     above = peak * (1.0 + options.above) + options.least
     answer = equilibrium(follower.model, follower.factor, follower.u, above, follower.history, commits=True)
@@ -123,7 +123,7 @@ def _jump(follower: PathFollower, peak: float) -> PathFollower | None:
 
 
 def successor(follow: PathFollower, follower: PathFollower) -> PathFollower:
-    """A tracer further along the path, which keeps the scales of the one it follows."""
+    """A follower further along the path, which keeps the scales of the one it follows."""
     follow.direction.elastic, follow.first_displacement = follower.direction.elastic, follower.first_displacement
     follow.certificate = follower.certificate
     return follow

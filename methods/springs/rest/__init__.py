@@ -1,1 +1,1 @@
-"""Equilibrium at a given load: Newton's steps, and slow motion to rest where they cycle."""
+"""Equilibrium at a given load: Newton's steps, and pseudo-transient relaxation to rest where they cycle."""

@@ -1,4 +1,4 @@
-"""Equilibrium under the dead load and off it: Newton, then slow motion when Newton cycles."""
+"""Equilibrium under the dead load and off it: Newton, then pseudo-transient relaxation when Newton cycles."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def equilibrium(
     limit: int | None = None,
     commits: bool = False,
 ) -> Equilibrium:
-    """Newton, then slow motion of at most `limit` Newton steps (None: as the options say) from where Newton started.
+    """Newton, then pseudo-transient relaxation of at most `limit` steps (None: as the options say) from the same start.
 
     Args:
         commits: whether that motion commits its friction history; the equilibrium holds under `history` if not.

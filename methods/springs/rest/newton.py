@@ -26,8 +26,8 @@ class Equilibrium:
         found: whether equilibrium holds.
         multiplier: of the live load; u: (N,) displacements; history: (P,) frozen-in shears h; state: (P,) states.
         residual: largest out-of-balance force, relative to the loads.
-        rate: (N,) displacement of the last increment of slow motion when the wall moves steadily; zeros when it is in
-            equilibrium, or neither was seen.
+        rate: (N,) displacement of the last increment of pseudo-transient relaxation when the wall moves steadily; zeros
+            when it is in equilibrium, or neither was seen.
         iterations: linear solves.
     """
 

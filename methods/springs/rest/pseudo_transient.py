@@ -1,4 +1,4 @@
-"""Slow motion of a wall to rest, under friction limits that lag behind.
+"""Pseudo-transient relaxation of a wall to rest, under friction limits that lag behind.
 
 Where Newton cycles the wall moves in implicit steps against forces of inertia, sigma M du, with sigma lowered as it
 settles. In one increment du of the motion the shear c = (mu - psi) N that slip dissipates at the gap points is fixed
