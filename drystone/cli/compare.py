@@ -53,7 +53,7 @@ from harness.model.load_cases import load_cases_of
 @click.command()
 @cases_argument
 @click.option("--suite", help='A suite of cases, or "all".  [default: small]')
-@methods_option(f"{','.join(library().methods.compare)} and those gated")
+@methods_option(f"{','.join(library().methods.compare)} and those that checked references name")
 @click.option(
     "--study",
     "studied",

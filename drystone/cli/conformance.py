@@ -69,8 +69,7 @@ def _print(method: Method, document: dict[str, object]) -> None:
     names = ("group", "check", "outcome", "cpu_seconds", "sentence")
     shown = [{name: row[name] for name in names} | {"cpu_seconds": f"{row['cpu_seconds']:.3f}"} for row in rows]
     terminal.print_rows(shown)
-    count = {outcome: sum(row["outcome"] == outcome for row in rows) for outcome in ("conforms", "refused", "fails")}
-    figures = ", ".join(f"{number} {outcome}" for outcome, number in count.items())
+    met, refused, failed = (sum(row["outcome"] == end for row in rows) for end in ("conforms", "refused", "fails"))
     seconds = sum(row["cpu_seconds"] for row in rows)
     verdict = "conforms" if document["conforms"] else "does not conform"
-    say(f"{method.name} {verdict}: of {len(rows)} checks {figures}; {seconds:.2f} s of CPU.")
+    say(f"{method.name} {verdict}. Checks: {met} passed, {refused} refused, {failed} failed; {seconds:.2f} s of CPU.")

@@ -42,7 +42,7 @@ from harness.model.writing import write_whole
     shell_complete=known_methods,
     default=library().methods.quick,
     show_default=True,
-    help="That is asked once a set of joints.",
+    help="The method that is run once for each set of joints.",
 )
 @json_flag
 @catching

@@ -49,7 +49,7 @@ COMMANDS = {
     "figure": ("walls", "figure", "Draw the answers of methods as a figure for a paper."),
     "import": ("files", "import_", "Convert a drawing to WALL.json."),
     "export": ("files", "export", "Write a wall and its answer for other programs."),
-    "methods": ("methods", "methods", "Make programs in any language methods."),
+    "methods": ("methods", "methods", "Register programs in any language as methods."),
     "new": ("files", "new", "Make a parametric wall."),
     "animate": ("walls", "animate", "Animate the mechanism of a method."),
 }

@@ -35,7 +35,7 @@ def words_of(command: str) -> list[str]:
 
 @click.group(cls=AskingGroup)
 def methods() -> None:
-    """Make programs in any language methods, by entries of methods.toml."""
+    """Register programs in any language as methods, by entries of methods.toml."""
 
 
 @methods.command()

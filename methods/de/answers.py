@@ -224,7 +224,7 @@ def _collapse(brackets: list[OrderBracket]) -> Answer:
             f"do not distinguish from zero; over {len(brackets)} sweep orders between {low:.6g} and {high:.6g}"
         )
     if undecided:
-        sentence += f"; {undecided} load steps are undecided and are not counted as held"
+        sentence += f"; undecided load steps, which are not counted as held: {undecided}"
     status = Status.OK
     # Beside a range that the orders leave open, what one of them leaves open is as small as it is to that range.
     widest = max(0.0 if b.nothing else ((b.moving or 0.0) - (b.held or 0.0)) / high for b in complete)
