@@ -27,7 +27,7 @@ from methods.springs.warm_up import block_on_halves
 
 
 @cache
-def load_impulses() -> None:
+def _load_impulses() -> None:
     """Make a time step of a single block, once in a process."""
     block = block_on_halves((0.6, 0.4))
     course = courses(block)
@@ -40,7 +40,7 @@ class DampedHolds(Solver):
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
-        load_impulses()
+        _load_impulses()
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`."""
@@ -118,7 +118,7 @@ class ReleasedCollapse(Solver):
 
     def prepare(self) -> None:
         """Load the compiled sweeps."""
-        load_impulses()
+        _load_impulses()
 
     def solve(self, assembly: Assembly, settings: ReleaseSettings) -> Answer:
         """Answer of `de` with the history of the collapse: frames in `details`, time and displacement in `path`."""

@@ -113,7 +113,7 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
 def is_lost(assembly: Assembly, answer: Answer) -> bool:
     """Whether a wall set in has no state to follow, although statics does not show that the wall itself falls."""
     lost = answer.finding in (Finding.FALLS, Finding.NONE) and answer.status is not Status.REFUSED
-    return lost and falling_mechanism(assembly) is None
+    return lost and _falling_mechanism(assembly) is None
 
 
 def ends_at(assembly: Assembly, answer: Answer, share: FloatArray) -> Answer | None:
@@ -122,7 +122,7 @@ def ends_at(assembly: Assembly, answer: Answer, share: FloatArray) -> Answer | N
     A wall that falls although nothing crushes falls. One that falls as it is set in need not.
     """
     if answer.finding is Finding.FALLS:
-        proof = falling_mechanism(assembly)
+        proof = _falling_mechanism(assembly)
         if proof is not None:
             return _falls(answer, proof)
         sentence = "the wall falls as its joints are set in, which does not show that it falls: statics finds no proof"
@@ -139,7 +139,7 @@ def _least(found: list[_StateOfStrips]) -> _StateOfStrips:
     return min(found, key=lambda one: one.state.multiplier)
 
 
-def falling_mechanism(assembly: Assembly) -> FloatArray | None:
+def _falling_mechanism(assembly: Assembly) -> FloatArray | None:
     """A dilatant mechanism (n, 3) on which the dead load does more work than the joints take; None if none is found."""
     own = greatest_by_chords(assembly, np.zeros_like(assembly.dead), assembly.dead, 2.0)
     return own.mechanism if own.upper < 1.0 else None
@@ -203,5 +203,5 @@ def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
 
 def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
     """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
-    proof = falling_mechanism(assembly)
+    proof = _falling_mechanism(assembly)
     return no_answer(answer, sentence) if proof is None else _falls(answer, proof)

@@ -18,7 +18,7 @@ import highspy
 import numpy as np
 import scipy.sparse as sp
 
-from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.failures import NumericalFailure, SingularMatrix, sparse_lu
 from methods.numerics.silent_highs import SilentHighs
 
@@ -61,7 +61,6 @@ class Vertex:
 
     Attributes:
         value: (c,) columns; dual: (r,) multipliers of the rows; reduced: (c,) reduced costs.
-        basic: (c,) columns that the basis leaves between their bounds.
         primal: largest violation of a bound; dual_violation: of the sign of a multiplier or reduced cost; both
             relative to the terms beside it.
         feasible: whether it keeps all bounds to rounding; optimal: whether it is optimal too.
@@ -70,7 +69,6 @@ class Vertex:
     value: FloatArray
     dual: FloatArray
     reduced: FloatArray
-    basic: BoolArray
     primal: float
     dual_violation: float
     feasible: bool
@@ -144,7 +142,6 @@ class StandardForm:
             best.value[own],
             best.dual,
             best.reduced[own],
-            best.status[own] == BASIC,
             best.primal,
             best.dual_violation,
             best.primal <= self._tolerances.accurate,

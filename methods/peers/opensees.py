@@ -59,7 +59,7 @@ class ContactModel:
     """
 
     def __init__(self, assembly: Assembly, settings: OpenSeesSettings, options: OpenSeesTuning) -> None:
-        self._ops = ops = load_opensees()
+        self._ops = ops = _load_opensees()
         self._options, self._stiffness = options, settings.stiffness
         self.assembly, self._free = assembly, assembly.free.tolist()
         length, force = assembly.length_scale, assembly.force_scale / assembly.n_free
@@ -162,7 +162,7 @@ class ContactModel:
             ops.element("zeroLength", tag, ground, self._node_of[i], "-mat", 1, 1, 1, "-dir", 1, 2, 6)
 
 
-def load_opensees() -> Any:
+def _load_opensees() -> Any:
     """The package openseespy.
 
     Raises:
@@ -197,7 +197,7 @@ class OpenSeesContacts(Solver):
         Raises:
             InputError: openseespy is not installed.
         """
-        load_opensees()
+        _load_opensees()
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: OpenSeesSettings) -> Answer:

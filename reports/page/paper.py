@@ -124,8 +124,6 @@ class Paper:
     ratio_to_value: str
     experiment: str
     imperfection: str
-    block_case: int | None
-    wall_case: int | None
     applied: list[str]
     applications: list[ApplicationRow]
 
@@ -156,8 +154,6 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
         ratio_to_value=_ratio(times | earlier) if earlier else "",
         experiment="" if wall is None else _experiment(wall[1]),
         imperfection=_imperfection(run),
-        block_case=None if block is None else block[0],
-        wall_case=None if wall is None else wall[0],
         applied=printed().application.methods,
         applications=applications(run),
     )

@@ -99,7 +99,7 @@ BALANCED = 1e-6
 """Out-of-balance acceleration of a wall whose contacts are loaded, as a part of gravity."""
 
 
-def load_contacts(space: PymunkBlocks, steps: TimeSteps) -> bool:
+def _load_contacts(space: PymunkBlocks, steps: TimeSteps) -> bool:
     """Let the contacts bear the dead load before anything moves: steps whose motion is taken back; whether they do.
 
     The solver begins a step with the impulses of the last one. Without any, an arch drops until its joints catch it.
@@ -136,7 +136,7 @@ def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: Time
     push[:, 0] = np.where(assembly.fixed, 0.0, -assembly.weight)
     moved = replace(assembly, live=push)
     space = PymunkBlocks(moved, iterations=steps.iterations, options=steps.tuning, weighed=True)
-    load_contacts(space, steps)
+    _load_contacts(space, steps)
     pushes = motion.means(count.step * np.arange(count.moving + 1, dtype=float))
     still = Stillness(int(np.ceil(patience(assembly) / (count.stride * steps.time_step))), assembly.length_scale)
     times, places = [0.0], [space.places()]

@@ -64,7 +64,7 @@ def follow(
             end = follower.run(record, max_events, follower.multiplier + interval, turn)
         residual = max(residual, follower.worst_residual)
         if end == PathEnd.TURNED_DOWN:
-            follower, turn = past_turn(follower, record.peak, jumps if record.peak > hopeless else 0)
+            follower, turn = _past_turn(follower, record.peak, jumps if record.peak > hopeless else 0)
             jumps -= 1
             if turn == np.inf:
                 hopeless = record.peak
@@ -89,10 +89,10 @@ def _committed(follower: PathFollower, interval: float, record: PathRecord) -> P
         after.model.bar_tensions(after.trial),
     )
     record.keep(after.load_step)
-    return successor(after, follower)
+    return _successor(after, follower)
 
 
-def past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFollower, float]:
+def _past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFollower, float]:
     """The follower to go on with where a path has turned down, and the share of the peak at which to look again.
 
     Args:
@@ -119,10 +119,10 @@ def _jump(follower: PathFollower, peak: float) -> PathFollower | None:
         follow = PathFollower.from_rest(follower.model, follower.factor, answer)
     except SingularTangent:
         return None
-    return successor(follow, follower)
+    return _successor(follow, follower)
 
 
-def successor(follow: PathFollower, follower: PathFollower) -> PathFollower:
+def _successor(follow: PathFollower, follower: PathFollower) -> PathFollower:
     """A follower further along the path, which keeps the scales of the one it follows."""
     follow.direction.elastic, follow.first_displacement = follower.direction.elastic, follower.first_displacement
     follow.certificate = follower.certificate
