@@ -33,32 +33,32 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} takes no dilatancy; the joint between {between(joint)} has the dilatancy "
             f"{law.dilatancy[joint]:g}",
-            f"Use a method with dilatancy ({', '.join(methods_with('any_dilatancy'))}), or leave the dilatancy out",
+            f"Take a method that follows dilatancy ({', '.join(methods_with('any_dilatancy'))}), or leave it out",
         )
     if assembly.strong and not method.traits.any_strength:
         raise InputError(
             f"{method.name} takes dry joints only; that between {between(int(np.argmin(law.dry)))} has cohesion or "
             "tensile strength",
-            f"Use a method with strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
+            f"Take a method that follows the strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
             "cohesion and tensile strength out",
         )
     if assembly.breaks and not method.traits.any_brittle:
         raise InputError(
             f"{method.name} takes joints that keep their strength; that between "
             f"{between(int(np.argmax(assembly.brittle)))} is brittle",
-            f"Use a method with brittle joints ({', '.join(methods_with('any_brittle'))}), or leave out "
+            f"Take a method that follows brittle joints ({', '.join(methods_with('any_brittle'))}), or leave out "
             '"after": "residual"',
         )
     if len(assembly.bars) and not method.traits.any_bars:
         raise InputError(
             f"{method.name} takes no ties, props and passive fill; the wall has {first_few(assembly.bars.names, 4)}",
-            f"Use a method with bars ({', '.join(methods_with('any_bars'))}), or leave them out",
+            f"Take a method that follows bars ({', '.join(methods_with('any_bars'))}), or leave them out",
         )
     if assembly.crushes and not method.traits.any_crushing:
         raise InputError(
             f"{method.name} takes joints that do not crush; that between {between(int(np.argmin(assembly.crushing)))} "
             "has a compressive strength",
-            f"Use a method with crushing (--method {methods_with('any_crushing')[0]}; all of them: "
+            f"Take a method that follows crushing (--method {methods_with('any_crushing')[0]}; all of them: "
             f"{', '.join(methods_with('any_crushing'))}), or leave it out",
         )
     if np.any(assembly.support_motion):

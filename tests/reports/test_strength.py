@@ -74,7 +74,7 @@ def test_terminal_says_both_and_which_is_safe_and_who_refuses(tmp_path: Path):
     assert "rely on the residual value of a method that is not an upper bound" in said
     assert "fe 0.7500000 plastic, 0.5000000 residual" in said
     assert "de-tilt takes dry joints only" in said
-    assert "Use a method with strength of joints (de, fe, fe-newton, fe-qp, la, la-associated, " in said
+    assert "Take a method that follows the strength of joints (de, fe, fe-newton, fe-qp, la, la-associated, " in said
     alone = command("run", "la-associated", path, cwd=tmp_path)
     assert "0.5000000, without cohesion and tensile strength" in alone.stdout
 
