@@ -1,6 +1,6 @@
 """Tables of `drystone bench` that others publish: whether they can be joined to one's own.
 
-A table is what its author says: it is held against itself, the walls of the set and the rows beside it, and refused
+A table is what its author says: it is compared with itself, the walls of the set and the rows beside it, and refused
 where these contradict each other. That its answers were judged is not repeated.
 """
 

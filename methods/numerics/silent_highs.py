@@ -1,4 +1,4 @@
-"""HiGHS without a word on the terminal, whichever release is installed."""
+"""HiGHS without a message on the terminal, whichever release is installed."""
 
 from __future__ import annotations
 
