@@ -44,7 +44,7 @@ def check_table(
         methods: whose rows one's own table has or will have.
 
     Raises:
-        InputError: as `Bench.joined`; here rows of this table alone are held against each other.
+        InputError: as `Bench.joined`; here rows of this table alone are compared with each other.
     """
     missing = [column for column in COLUMNS if column not in table.columns]
     if missing:

@@ -161,7 +161,7 @@ ASKED_OF_OTHERS = {
     "harness/formats/dxf.py: holder",
     "harness/formats/dxf.py: entity",
 }
-"""Objects of the standard library and of ezdxf that may lack an attribute, as flags of other systems."""
+"""Objects of the standard library, pydantic and ezdxf that may lack an attribute, as flags of other systems."""
 
 
 def test_what_an_object_may_do_is_declared_and_not_asked_by_getattr():
