@@ -113,6 +113,7 @@ class Case:
         notes: what a person should hear about how the case was found.
         wall_id: id of the wall of which this is one of several load cases; empty if it is the only one.
         load_case: name of this load case; empty if it is the only one.
+        argument: what names the wall to a command: the id of the case, or its file; empty where none has this load.
     """
 
     file: CaseFile
@@ -121,6 +122,7 @@ class Case:
     notes: tuple[str, ...] = ()
     wall_id: str = ""
     load_case: str = ""
+    argument: str = ""
 
     @cached_property
     def built(self) -> Built:
@@ -184,7 +186,7 @@ def read_case(folder: Path) -> Case:
             "loads.live",
             str(wall_path),
         )
-    return Case(file, wall, str(wall_path))
+    return Case(file, wall, str(wall_path), argument=file.id)
 
 
 def id_of(words: str) -> str:
@@ -203,7 +205,7 @@ def case_of_wall(path: Path) -> Case:
     file = CaseFile(
         id=id_of(path.stem), title=wall.title or path.stem, source=str(wall.metadata.get("source", "the user"))
     )
-    return Case(file, wall, str(path))
+    return Case(file, wall, str(path), argument=path.name)
 
 
 def shipped_cases() -> Path:

@@ -58,7 +58,8 @@ def reversed_live(case: Case) -> Case:
     loads = case.wall.loads.model_copy(update={"live": turned})
     file = case.file.model_copy(update={"references": []})
     wall = case.wall.model_copy(update={"loads": loads})
-    return replace(case, file=file, wall=wall, origin=f"{Path(case.origin).name} with the live load reversed")
+    origin = f"{Path(case.origin).name} with the live load reversed"
+    return replace(case, file=file, wall=wall, origin=origin, argument="")
 
 
 def with_live_load(case: Case, x: float, y: float) -> Case:
@@ -83,6 +84,7 @@ def with_live_load(case: Case, x: float, y: float) -> Case:
         file=file,
         wall=case.wall.model_copy(update={"loads": loads}),
         origin=f"{Path(case.origin).name} with the {said}",
+        argument="",
         notes=case.notes if case.wall.loads.live is None else (*case.notes, f"the {said} replaces that of the file"),
     )
 

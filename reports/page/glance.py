@@ -145,12 +145,13 @@ def _further(run: ComparisonRun, own: Governing) -> list[tuple[str, str]]:
     found = []
     if len(own.ways) == 1 and not case.load_case and is_horizontal(case):
         found.append(("The opposite live load", f"{run.command} --both-signs"))
-    friction = friction_of(case.assembly)
-    name = shlex.quote(Path(case.origin).name)
-    if friction is not None and not case.load_case:
+    if not case.argument:
+        return found
+    friction, name = friction_of(case.assembly), shlex.quote(case.argument)
+    if friction is not None:
         ends = f"{numbers.given(0.8 * friction, 3)}:{numbers.given(1.2 * friction, 3)}:9"
         found.append(("Friction 20 % lower to 20 % higher", f"drystone sweep {name} --vary friction={ends}"))
-    if not case.load_case:
+    if Path(case.argument).suffix:  # a wall of the library is named by its id, and is valid
         found.append(("Whether it depends on the joint tolerance", f"drystone validate {name}"))
     return found
 

@@ -295,6 +295,23 @@ def test_vectors_in_brackets_are_values():
     assert axis_of("left,right", "--vary word", None) == ["left", "right"]
 
 
+def test_every_load_case_of_a_file_is_a_wall_of_the_study(tmp_path: Path):
+    """Each run of such a file was refused, because it has several loads."""
+    data = wall_data({"type": "stack", "width": 0.5, "height": 1.0, "count": 1}, 0.6)
+    del data["loads"]
+    pushes = {"wind": 1.0, "quake": -2.0}
+    data["load_cases"] = {name: {"live": {"body": [{"per_weight": [x, 0.0]}]}} for name, x in pushes.items()}
+    (tmp_path / "pier.json").write_text(json.dumps(data), encoding="utf-8")
+    words = ("--vary", "friction=0.2,0.8", "--methods", "la", "--no-report", "-o", "t", "--store", "s.sqlite")
+    done = drystone("sweep", "pier.json", *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    table = pd.read_csv(tmp_path / "t" / "runs.csv")
+    found = {tuple(row[:2]): row[2] for row in table[["case", "friction", "multiplier"]].to_numpy()}
+    assert found == pytest.approx(
+        {("pier-wind", 0.2): 0.2, ("pier-wind", 0.8): 0.5, ("pier-quake", 0.2): 0.1, ("pier-quake", 0.8): 0.25}
+    )
+
+
 def test_two_directions_of_the_load_are_run_and_told_apart(tmp_path: Path):
     """A block of friction .3 slides at .3 to either side, and at .15 under twice the load."""
     words = ("--vary", "loads.live.body[0].per_weight=[1,0],[-2,0]", "--methods", "la-associated", "--no-report")

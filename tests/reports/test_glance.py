@@ -11,7 +11,7 @@ import pytest
 
 import drystone
 from harness.model.comparison import CaseResults, Certified, ComparisonRun
-from harness.model.live_load import both_signs
+from harness.model.live_load import both_signs, with_live_load
 from harness.model.load_cases import load_cases_of
 from harness.model.method import Finding
 from harness.model.result import Result
@@ -125,7 +125,7 @@ def test_largest_walls_count_accepted_runs_only():
 
 def own(multiplier: float, name: str = "") -> CaseResults:
     case = samples.bond(f"mine{name}")
-    case = replace(case, wall_id="mine", load_case=name)
+    case = replace(case, wall_id="mine", load_case=name, argument="my wall.json")
     return CaseResults(case, [samples.solved(case, "la", multiplier), samples.solved(case, "fe", multiplier * 1.02)])
 
 
@@ -160,10 +160,19 @@ def test_a_wall_that_falls_in_one_load_case_is_governed_by_it():
 def test_what_would_change_the_number_is_a_command_that_fits_the_wall():
     assert dict(glance(run_of(own(0.3))).further) == {
         "The opposite live load": "drystone compare mine.json --both-signs",
-        "Friction 20 % lower to 20 % higher": "drystone sweep 'a test' --vary friction=0.52:0.78:9",
-        "Whether it depends on the joint tolerance": "drystone validate 'a test'",
+        "Friction 20 % lower to 20 % higher": "drystone sweep 'my wall.json' --vary friction=0.52:0.78:9",
+        "Whether it depends on the joint tolerance": "drystone validate 'my wall.json'",
     }
-    assert glance(run_of(own(0.3, "wind"), own(0.4, "quake"))).further == []
+    assert dict(glance(run_of(own(0.3, "wind"), own(0.4, "quake"))).further) == {
+        "Friction 20 % lower to 20 % higher": "drystone sweep 'my wall.json' --vary friction=0.52:0.78:9",
+        "Whether it depends on the joint tolerance": "drystone validate 'my wall.json'",
+    }, "a sweep takes all load cases of the file"
+
+
+def test_no_study_of_a_load_that_stands_in_no_file_is_offered():
+    item = own(0.3)
+    changed = replace(item, case=with_live_load(item.case, 0.0, -1.0))
+    assert glance(run_of(changed)).further == []
     assert glance(samples.typical()).governs is None
 
 

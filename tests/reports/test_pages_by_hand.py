@@ -269,7 +269,7 @@ def test_bytes_of_packed_drawings_are_about_as_counted():
 
 
 def test_a_chosen_number_of_friction_is_a_fifth_lower_and_higher_in_three_digits():
-    case = replace(samples.bond("mine", friction=1 / 3), wall_id="mine")
+    case = replace(samples.bond("mine", friction=1 / 3), wall_id="mine", argument="mine.json")
     own = CaseResults(case, [samples.solved(case, "la", 0.3)])
     further = dict(glance.glance(run_of(own)).further)
     assert further["Friction 20 % lower to 20 % higher"].endswith("--vary friction=0.267:0.4:9")

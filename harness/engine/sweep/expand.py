@@ -22,6 +22,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.content import hash_of
 from harness.model.errors import InputError
+from harness.model.load_cases import load_cases_of
 from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall, validate, wall_json
 from harness.model.wall import Wall
@@ -141,7 +142,7 @@ class SweepRun(Run):
 
 
 def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = None) -> list[WallSource]:
-    """The walls a study starts from; wall files are looked for beside the study's file.
+    """The walls a study starts from, one a load case; wall files are looked for beside the study's file.
 
     Raises:
         InputError: an unknown case, or a file that is no wall.
@@ -150,7 +151,8 @@ def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = 
         wall = parse_wall({"format": "wall/1"} | study.wall, f"wall of study {study.name}")
         return [WallSource(study.name, json.loads(wall_json(wall)))]
     words = [str(place / word) if place is not None and (place / word).exists() else word for word in study.cases]
-    return [WallSource(case.id, json.loads(wall_json(case.wall))) for case in find_cases(words, None, folders)]
+    cases = [each for case in find_cases(words, None, folders) for each in load_cases_of(case)]
+    return [WallSource(case.id, json.loads(wall_json(case.wall))) for case in cases]
 
 
 def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
