@@ -61,11 +61,12 @@ def test_walls_that_stand_for_all_are_no_matter_of_dispute():
 
 
 def test_the_upper_bound_is_an_associated_maximum_that_was_found_and_not_rejected():
-    best = found("la-associated", Finding.COLLAPSES)
+    best = found("la-associated", Finding.COLLAPSES).model_copy(update={"flow": "associated"})
     rejected = best.model_copy(update={"judge": best.judge.model_copy(update={"accepted": False})})
     open_end = found("la-associated", Finding.UNBOUNDED)
     lost = best.model_copy(update={"status": Status.NOT_CONVERGED})
-    for others in ([], [found("la", Finding.COLLAPSES)], [rejected], [open_end], [lost]):
+    of_no_flow = best.model_copy(update={"flow": "non-associated"})
+    for others in ([], [found("la", Finding.COLLAPSES)], [rejected], [open_end], [lost], [of_no_flow]):
         assert CaseResults(CASE, [*others, best]).associated is best
         assert CaseResults(CASE, others).associated is None
     assert CaseResults(CASE, [best]).of("la-associated") is best

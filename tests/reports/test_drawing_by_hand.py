@@ -275,6 +275,6 @@ def test_a_block_of_the_second_mechanism_is_drawn_only_where_it_stands_elsewhere
 def test_displaced_blocks_are_drawn_where_they_are():
     case = samples.block()
     moved = [polygon + np.array([0.25, -0.5]) for polygon in case.assembly.polygons]
-    held, moves = shapes_of(displaced_drawing(case, moved), Polygons)
+    held, moves = shapes_of(displaced_drawing(case.assembly, "the block", moved), Polygons)
     close(held.outlines, np.array([LEFT, RIGHT]) + np.array([1000, 2000]))
     close(moves.outlines, np.array([BLOCK]) + np.array([1000, 2000]))
