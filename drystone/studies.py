@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from harness.engine.sweep.summary import GridSummary
 
-Told = Callable[[bool], None]
+Counted = Callable[[bool], None]
 """Called after each run, with whether it came from the store."""
 
 
@@ -126,7 +126,7 @@ def sweep(
     store: str | Path | None = None,
     executor: Executor | None = None,
     fresh: bool = False,
-    told: Told | None = None,
+    told: Counted | None = None,
     folders: Sequence[Path] = (),
 ) -> Sweep:
     """Make every run of a study, each in a process of its own, and judge every answer.
@@ -173,7 +173,7 @@ def rows_of(
     executor: Executor,
     *,
     fresh: bool = False,
-    telling: Callable[[int], AbstractContextManager[Told]] = lambda _: nullcontext(_silent),
+    telling: Callable[[int], AbstractContextManager[Counted]] = lambda _: nullcontext(_silent),
 ) -> list[Row]:
     """The rows of all runs of a study, made or from the store; neighbours share what they found, if it says so.
 
@@ -203,6 +203,18 @@ def rows_of(
 
 def _silent(stored: bool) -> None:
     """Tell nobody."""
+
+
+def shipped_study(name: str, element: str) -> Path:
+    """The file of a study that comes with Drystone.
+
+    Raises:
+        InputError: there is none of this name; `element` is what asked for it.
+    """
+    known = shipped_studies()
+    if name not in known:
+        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(known)}", element)
+    return known[name]
 
 
 def shipped_studies() -> dict[str, Path]:

@@ -107,7 +107,7 @@ def main() -> None:
     \b
     drystone show WALL.json -o wall.svg   draw a wall before anything is run
     drystone run la WALL.json             one method on one wall
-    drystone compare WALL.json            all methods side by side, with a report
+    drystone compare WALL.json            FE, LA and DE side by side, with a report
     drystone list cases                   the walls that come with Drystone
     """
 

@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from drystone.studies import Told, rows_of, shipped_studies
+from drystone.studies import Counted, rows_of, shipped_study
 from harness.engine.executors import LocalExecutor
 from harness.engine.store import open_store
 from harness.engine.sweep.curve import curve_of
@@ -62,9 +62,7 @@ def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: 
         InputError: no such study, one without a curve or, where an amount is given, without seeds.
     """
     name, _, rest = words.partition(":")
-    if name not in shipped_studies():
-        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(shipped_studies())}", "--study")
-    path, amount = shipped_studies()[name], amount_of(rest)
+    path, amount = shipped_study(name, "--study"), amount_of(rest)
     study = read_study(path)
     if study.curve is None:
         raise InputError(f'"{name}" has no curve', "Give it a table [curve], or use `drystone sweep`", "--study")
@@ -112,7 +110,7 @@ def in_time(
 
 
 @contextmanager
-def progress(total: int, *, quiet: bool) -> Iterator[Told]:
+def progress(total: int, *, quiet: bool) -> Iterator[Counted]:
     """Something to call after each run: a bar with rate and time left, or a line now and then."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn

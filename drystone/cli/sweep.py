@@ -28,7 +28,7 @@ from drystone.cli.options import (
 from drystone.cli.settings import method_settings
 from drystone.cli.studies import duration, progress
 from drystone.cli.terminal import print_rows
-from drystone.studies import Sweep, changed, rows_of, shipped_studies, study_file
+from drystone.studies import Sweep, changed, rows_of, shipped_studies, shipped_study, study_file
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.run import Limits
 from harness.engine.store import open_store
@@ -198,16 +198,13 @@ def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_js
 @catching
 def study(name: str | None) -> None:
     """List the studies that come with Drystone, or print the file of one, to be changed and swept."""
-    shipped = shipped_studies()
     if name is None:
-        for known, path in shipped.items():
+        for known, path in shipped_studies().items():
             read = read_study(path)
             count = len(expand(read, sources_of(read, (), path.parent)))
             say(f"{known:16s} {count:5d} runs: {read.question or read.title}")
         return
-    if name not in shipped:
-        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(shipped)}", "study")
-    say(shipped[name].read_text(encoding="utf-8").rstrip("\n"))
+    say(shipped_study(name, "study").read_text(encoding="utf-8").rstrip("\n"))
 
 
 @click.group(name="store")

@@ -227,6 +227,7 @@ class Listed(Method):
     tolerance: float
     Settings: type[Settings]
     traits: Traits
+    fresh_process: bool = False
     shares_work: bool = False
     follows_motions: bool = False
 

@@ -18,7 +18,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
     """Refuse a wall with joints or supports that a method does not take.
 
     Dilatancy and each strength of joints, ties and props are taken by methods whose traits say so; supports that move
-    are taken by none yet, only by the programmes of `methods.la`.
+    by none for a multiplier, but for a reaction (`drystone.reactions`, `settling`, `held_reactions`).
 
     Raises:
         InputError: the wall has such joints or supports.

@@ -9,7 +9,8 @@ from harness.model.assembly import FloatArray, IntArray
 from harness.model.joint_law import JointLaw
 
 COST = 1e4
-"""Of the multiplier in a programme for the greatest one, a block."""
+"""Of the multiplier in a programme for the greatest one: speeds of the dual mechanism are of this order, far above what
+HiGHS rounds off. Programmes that count weights in those of all blocks take it a block."""
 
 Entries = tuple[FloatArray, IntArray, IntArray]
 """Values, rows and columns of a sparse matrix."""

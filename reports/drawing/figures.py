@@ -78,7 +78,9 @@ def results_figure(case: Case, results: list[Result], kind: str) -> Figure:
         InputError: an unknown kind, or results without the field to draw.
     """
     if kind not in KINDS or kind == "wall":
-        raise InputError(f'there is no figure "{kind}"', f"Ask for one of {', '.join(set(KINDS) - {'wall'})}")
+        raise InputError(
+            f'there is no figure "{kind}"', f"Ask for one of {', '.join(each for each in KINDS if each != 'wall')}"
+        )
     needed = {"mechanism": ["mechanism"], "comparison": ["mechanism", "forces"]}.get(kind, ["forces"])
     usable = [r for r in results if any(getattr(r, name) is not None for name in needed)]
     if not usable:

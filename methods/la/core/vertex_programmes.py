@@ -16,14 +16,18 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicSolution, StaticSolution
 from methods.numerics.linear_programme import INFINITY, Programme
-from methods.numerics.shear_rows import Entries, entries_of_shear_limits, least_shear_slacks, rows_of_blocks, shear_unit
+from methods.numerics.shear_rows import (
+    COST,
+    Entries,
+    entries_of_shear_limits,
+    least_shear_slacks,
+    rows_of_blocks,
+    shear_unit,
+)
 from methods.numerics.vertex import Vertex
 
 _SIMPLEX_UP_TO = 400
 """Interfaces above which the interior point with crossover of HiGHS is quicker than its simplex method."""
-
-COST = 1e4
-"""Of the multiplier: speeds of the dual mechanism are of this order, far above what HiGHS rounds off."""
 
 _BADLY_SCALED = 1e3
 """Ratio of loads of two blocks from which forces and equilibrium are measured in units of their own."""
