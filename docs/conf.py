@@ -24,6 +24,8 @@ myst_heading_anchors = 4
 html_theme = "furo"
 html_title = f"Drystone {release}"
 html_extra_path = ["wall-1.schema.json"]
+html_static_path = ["static"]
+html_css_files = ["print.css"]
 exclude_patterns = ["_build"]
 autodoc_typehints = "description"
 

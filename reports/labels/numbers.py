@@ -6,13 +6,18 @@ import math
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 NOTHING = "–"
+ROUNDING = 1e-12
+"""Share of the size of what is added up below which a sum is zero: doubles leave 1e-16 a term."""
 
 
-def plain(value: float, digits: int = 5) -> str:
-    """A number with so many significant digits and a true minus sign; powers of ten beyond 1e-4 and 1e6."""
+def plain(value: float, digits: int = 5, size: float = 0.0) -> str:
+    """A number with so many significant digits and a true minus sign; powers of ten beyond 1e-4 and 1e6.
+
+    Sums of terms of a given size are zero where no more than their rounding is left.
+    """
     if not math.isfinite(value):
         return "not finite"
-    if value == 0.0:
+    if abs(value) <= ROUNDING * size:
         return "0"
     if not 1e-4 <= abs(value) < 10.0 ** max(digits, 6):
         return power(value, max(1, digits - 2))

@@ -95,7 +95,7 @@ def render(run: ComparisonRun) -> str:
     """
     found = governing(run.cases, _JOINT_ROWS)
     item, case, shown = found.item, found.item.case, found.shown
-    document = json.dumps(run.cases[0].case.wall.document(), sort_keys=True, ensure_ascii=False)
+    document = json.dumps(case.wall.document(), sort_keys=True, ensure_ascii=False)
     return (
         environment()
         .get_template("appendix.html.j2")
@@ -103,7 +103,7 @@ def render(run: ComparisonRun) -> str:
             run=run,
             case=case,
             title=title_of_wall(case),
-            origin=Path(run.cases[0].case.origin).name,
+            origin=Path(case.origin).name,
             digest=hashlib.sha256(document.encode()).hexdigest()[:16],
             finding=wall_findings(item),
             advice=which_number(item),

@@ -136,6 +136,8 @@ def test_the_command_analyses_a_horizontal_load_both_ways(tmp_path: Path):
     assert "2 load cases were analysed; the lowest multiplier governs" in named
     assert "all further results are for the load case quake" in named
     assert "<h1>named</h1>" in named
+    assert "named.json, load case &#34;quake&#34;" in named
+    assert "wind&#34;" not in named, "the wall that governs heads the sheet, not the first load case"
     for name, value, governs in (("wind", "0.67059", ""), ("quake", "0.38824", "yes")):
         assert re.search(rf'"row">{name}</th><td>{value} \(la\)</td><td>[a-z ,]+</td><td>{governs}</td>', named)
 

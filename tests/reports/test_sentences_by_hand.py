@@ -337,6 +337,8 @@ def test_few_frictions_are_listed_and_many_are_a_range(frictions: list[float], t
         (numbers.given(1.5e6, 3), "1.5×10⁶"),
         (numbers.given(999999.0), "999999"),
         (numbers.plain(0.9e-4, 3), "9×10⁻⁵"),
+        (numbers.plain(1.1e-15, 4, 3.0), "0"),
+        (numbers.plain(1.1e-15, 4, 1e-9), "1.1×10⁻¹⁵"),
         (numbers.plain(1234567.0, 8), "1234567.0"),
         (numbers.given(1e-5), "10⁻⁵"),
         (numbers.given(1.25e-5), "1.25×10⁻⁵"),
