@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -10,6 +9,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.numerics.claims import analysed
+from methods.numerics.optional import optional
 from methods.peers.settings import BisectionSettings
 
 
@@ -54,12 +54,12 @@ class Bisection(Solver):
     Args:
         method: name of it, for messages.
         words: of its sentences.
-        load: the package of the program, for a method; raises InputError where it is not installed.
-        problem: of a wall, settings and the method; with `refusal`, why a wall is refused.
+        module: of the program, by its name for Python; extra: of drystone that brings it.
+        problem: of a wall, settings and that module; with `refusal`, why a wall is refused.
     """
 
-    def __init__(self, method: str, words: Words, load: Callable[[str], Any], problem: Any) -> None:
-        self._method, self._words, self._load, self._problem = method, words, load, problem
+    def __init__(self, method: str, words: Words, module: str, extra: str, problem: Any) -> None:
+        self._method, self._words, self._module, self._extra, self._problem = method, words, module, extra, problem
 
     def solve(self, assembly: Assembly, settings: BisectionSettings) -> Answer:
         """The bracket with the forces of its lower end.
@@ -67,10 +67,10 @@ class Bisection(Solver):
         Raises:
             InputError: the package is not installed.
         """
-        self._load(self._method)
-        return analysed(assembly, lambda part: self._of_component(part, settings))
+        package = optional(self._module, self._extra, self._method)
+        return analysed(assembly, lambda part: self._of_component(package, part, settings))
 
-    def _of_component(self, assembly: Assembly, settings: BisectionSettings) -> Answer:
+    def _of_component(self, package: Any, assembly: Assembly, settings: BisectionSettings) -> Answer:
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
         low, high = float(assembly.friction.min()), float(assembly.friction.max())
@@ -80,7 +80,7 @@ class Bisection(Solver):
             refusal = f"{program} takes one friction coefficient for all joints; the wall has {low:g} to {high:g}"
         if refusal:
             return Answer(Status.REFUSED, Finding.NONE, refusal)
-        problem: Borne = self._problem(assembly, settings, self._method)
+        problem: Borne = self._problem(assembly, settings, package)
         borne, not_borne = list[float](), list[float]()
 
         def bisected() -> bool:

@@ -23,18 +23,12 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline
 from methods.numerics.optional import optional
 from methods.peers.bisection import Bisection, Words
+from methods.peers.prisms import prism
 from methods.peers.settings import BisectionSettings, CraSettings
 
+_MODULE = "compas_cra.equilibrium.cra_native"
+"""Of compas_cra, which states and solves its problems."""
 _NO_PROOF = "that it finds none is no proof of collapse"
-
-
-def load_cra(method: str) -> Any:
-    """The module of compas_cra that states and solves its problems.
-
-    Raises:
-        InputError: it is not installed.
-    """
-    return optional("compas_cra.equilibrium.cra_native", "cra", method)
 
 
 class Solvable:
@@ -43,11 +37,11 @@ class Solvable:
     Args:
         assembly: the wall, with one friction coefficient.
         settings: those of `cra`; of `rbe` alone for RBE.
-        method: name of it, for messages.
+        package: the module of compas_cra.
     """
 
-    def __init__(self, assembly: Assembly, settings: BisectionSettings, method: str) -> None:
-        self._native = native = load_cra(method)
+    def __init__(self, assembly: Assembly, settings: BisectionSettings, package: Any) -> None:
+        self._native = native = package
         self.assembly = assembly
         self._length, self._force = assembly.length_scale, assembly.force_scale / assembly.n_free
         self._wall = self._extruded()
@@ -79,12 +73,7 @@ class Solvable:
         frame = optional("compas.geometry", "cra", "cra").Frame
         result = structures.CRA_Assembly()
         for i, polygon in enumerate(wall.polygons):
-            corners = (polygon - wall.middle) / self._length
-            k = len(corners)
-            vertices = [[float(x), side, float(y)] for side in (-0.5, 0.5) for x, y in corners]
-            sides = [[j, k + j, k + (j + 1) % k, (j + 1) % k] for j in range(k)]
-            faces = [list(range(k)), list(range(2 * k - 1, k - 1, -1)), *sides]
-            result.add_block(block.from_vertices_and_faces(vertices, faces), node=i)
+            result.add_block(block.from_vertices_and_faces(*prism((polygon - wall.middle) / self._length)), node=i)
             result.graph.node_attribute(i, "is_support", bool(wall.fixed[i]))
         self._joints_of: dict[tuple[int, int], list[int]] = {}
         for p in range(wall.n_interfaces):
@@ -142,17 +131,14 @@ class Solvable:
 class RigidBlockEquilibrium(Bisection):
     """Rigid-block equilibrium (`rbe`)."""
 
-    package = "compas_cra"
-
     def __init__(self) -> None:
         words = Words("compas_cra", "found an equilibrium without tension", _NO_PROOF)
-        super().__init__("rbe", words, load_cra, Solvable)
+        super().__init__("rbe", words, _MODULE, "cra", Solvable)
 
 
 class CoupledRigidBlockAnalysis(Bisection):
     """Coupled rigid-block analysis (`cra`)."""
 
-    package = "compas_cra"
-
     def __init__(self) -> None:
-        super().__init__("cra", Words("compas_cra", "found coupled forces and motions", _NO_PROOF), load_cra, Solvable)
+        words = Words("compas_cra", "found coupled forces and motions", _NO_PROOF)
+        super().__init__("cra", words, _MODULE, "cra", Solvable)

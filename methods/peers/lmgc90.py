@@ -14,27 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly, FloatArray, signed_area
 from harness.model.deadline import Deadline
-from methods.numerics.optional import optional
 from methods.peers.bisection import Bisection, Words
+from methods.peers.prisms import prism
 from methods.peers.settings import Lmgc90Settings
 
 _GRAVITY = 9.81
 """Acceleration that LMGC90 puts on every body."""
-_SIDES = np.array([-0.5, 0.5])
-"""Where prisms end, in length scales."""
 _PLANE = (0, 2)
 """Coordinates of LMGC90 that are x and y of the wall; the turn from the first to the second is minus its turn."""
-
-
-def load_lmgc90(method: str) -> Any:
-    """The module with the solver of compas_lmgc90.
-
-    Raises:
-        InputError: it is not installed.
-    """
-    return optional("compas_lmgc90.solver", "lmgc90", method)
 
 
 class Followed:
@@ -43,7 +32,7 @@ class Followed:
     Args:
         assembly: the wall, of convex blocks and one friction coefficient.
         settings: of the method.
-        method: its name, for messages.
+        package: the module with the solver of compas_lmgc90.
 
     Attributes:
         said: what came of each multiplier.
@@ -51,9 +40,9 @@ class Followed:
         motion: (n, 3) velocities of the least load in motion.
     """
 
-    def __init__(self, assembly: Assembly, settings: Lmgc90Settings, method: str) -> None:
+    def __init__(self, assembly: Assembly, settings: Lmgc90Settings, package: Any) -> None:
         self.assembly, self._settings = assembly, settings
-        self._solver_of = load_lmgc90(method).Solver
+        self._solver_of = package.Solver
         self._length, self._force = assembly.length_scale, assembly.force_scale / assembly.n_free
         self._step = settings.time_step / np.sqrt(_GRAVITY)  # lengths are in length scales
         self.said: list[str] = []
@@ -76,12 +65,9 @@ class Followed:
         sizes = np.empty(wall.n_blocks)
         for i, polygon in enumerate(wall.polygons):
             corners = (polygon - wall.middle) / self._length
-            sizes[i] = _area(corners)
+            sizes[i] = signed_area(corners)
             corners = corners if sizes[i] > 0.0 else corners[::-1]
-            k = len(corners)
-            vertices = [[float(x), float(side), float(y)] for side in _SIDES for x, y in corners]
-            sides = [[j, k + j, k + (j + 1) % k, (j + 1) % k] for j in range(k)]
-            faces = [list(range(k)), list(range(2 * k - 1, k - 1, -1)), *sides]
+            vertices, faces = prism(corners)
             # A mean dead load of a block weighs as much as a block does, so that all move alike.
             solver.geometry_from_v_f({"vertices": vertices, "faces": faces}, density=1.0)
         mass = np.abs(sizes)
@@ -172,11 +158,6 @@ class Followed:
         return forces / self._unit
 
 
-def _area(corners: FloatArray) -> float:
-    x, y = corners.T
-    return float(0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)))
-
-
 def _convex(polygon: FloatArray) -> bool:
     """Whether a polygon turns one way only, to rounding."""
     edges = np.roll(polygon, -1, axis=0) - polygon
@@ -188,8 +169,6 @@ def _convex(polygon: FloatArray) -> bool:
 class ContactDynamics(Bisection):
     """Bisection between rest and motion in LMGC90 (`lmgc90`)."""
 
-    package = "compas_lmgc90"
-
     def __init__(self) -> None:
         words = Words("LMGC90", "came to rest", "a motion that was followed is no proof of collapse")
-        super().__init__("lmgc90", words, load_lmgc90, Followed)
+        super().__init__("lmgc90", words, "compas_lmgc90.solver", "lmgc90", Followed)

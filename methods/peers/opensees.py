@@ -181,12 +181,7 @@ class OpenSeesContacts(Solver):
 
     Args:
         options: of the model.
-
-    Attributes:
-        package: that it needs.
     """
-
-    package = "openseespy"
 
     def __init__(self, options: OpenSeesTuning = OpenSeesTuning()) -> None:
         self._options = options
