@@ -138,8 +138,7 @@ class OtherWeights:
             shares = search.generator.uniform(1.0 - self.spread, 1.0 + self.spread, size=blocks)
             other = search.varied(replace(guide, dead=guide.dead * np.repeat(shares, 3)))
             with suppress(SingularMatrix):  # It ends one path, not the search.
-                end = other.path_end()
-                state = None if end is None else search.nearest_state(end.point.slack, end.point.rates)
+                state = search.interior(other)
                 if state is not None:
                     yield state
 

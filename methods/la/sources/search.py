@@ -233,9 +233,9 @@ class Search:
         result = self.follow(start_point(self.problem), self.choices.central)
         return None if result.gap > self.choices.widest_gap else result
 
-    def interior(self) -> CollapseState | None:
-        """The exact state nearest to where the interior point leads from the centred start."""
-        end = self.path_end()
+    def interior(self, guide: Search | None = None) -> CollapseState | None:
+        """The exact state nearest to where the interior point leads from the centred start, here or on a guide."""
+        end = (guide or self).path_end()
         return None if end is None else self.nearest_state(end.point.slack, end.point.rates)
 
     def as_one_block(self, state: CollapseState) -> CollapseState | None:
