@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 import math
 from dataclasses import dataclass, field
 
 from markupsafe import Markup
 
-from harness.model.writing import cell
+from harness.model.writing import csv_text
 from reports.charts.styles import Mark
 from reports.labels import numbers
 
@@ -204,17 +202,13 @@ class DrawnChart(Markup):
 
 def csv_of(chart: Chart) -> str:
     """The data of a chart: one row a point, with the ends of its bar where it has one."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
     fitted = ("fitted",) if any(series.curve for series in chart.series) else ()
-    writer.writerow(("series", chart.x_label, chart.y_label, "low", "high", *fitted))
+    rows: list[tuple[object, ...]] = []
     for series in chart.series:
         columns = (series.x, series.y, series.low, series.high, *((series.curve,) if fitted else ()))
-        for values in itertools.zip_longest(*columns, fillvalue=""):
-            writer.writerow((cell(series.name), *values))
-    for name, value in chart.levels:
-        writer.writerow((cell(name), "", value, "", ""))
-    return stream.getvalue()
+        rows += [(series.name, *values) for values in itertools.zip_longest(*columns)]
+    rows += [(name, None, value, None, None) for name, value in chart.levels]
+    return csv_text(("series", chart.x_label, chart.y_label, "low", "high", *fitted), rows)
 
 
 @dataclass(frozen=True)

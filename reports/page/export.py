@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import re
 import tempfile
@@ -21,7 +19,7 @@ from harness.model.proof import Proof, proof_of
 from harness.model.result import Result
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import Row, TableColumn, in_units, types, units, values
-from harness.model.writing import cell, write_whole
+from harness.model.writing import csv_text, write_whole
 from reports.charts import charts
 from reports.charts.curves import curves
 from reports.charts.studies import studies
@@ -49,10 +47,11 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
     """
     folder.mkdir(parents=True, exist_ok=True)
     results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
-    contents: dict[str, bytes] = {"results.csv": _csv(results), "comparisons.csv": _csv(_comparison_frame(run))}
-    contents["joints.csv"] = _joints_csv(run)
+    contents: dict[str, bytes] = {"results.csv": _csv(results).encode()}
+    contents["comparisons.csv"] = _csv(_comparison_frame(run)).encode()
+    contents["joints.csv"] = _joints_csv(run).encode()
     if any(len(item.case.assembly.bars) for item in run.cases if not shapes.problem(item.case)):
-        contents["bars.csv"] = _bars_csv(run)
+        contents["bars.csv"] = _bars_csv(run).encode()
     if find_spec("pyarrow") is not None:
         contents["results.parquet"] = results.to_parquet(index=False)
     for item in run.cases:
@@ -145,42 +144,26 @@ def _json(data: Any) -> bytes:
     return (json.dumps(data, indent=1, ensure_ascii=False, default=str) + "\n").encode()
 
 
-def _csv(table: pd.DataFrame) -> bytes:
-    """CSV with texts quoted and numbers not, so that a reader does not turn an id of digits into a number."""
+def _csv(table: pd.DataFrame) -> str:
     known = table.astype(object)
-    plain = known.where(known.notna(), None).map(_field)
-    return plain.to_csv(index=False, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n").encode()
+    return csv_text(table.columns, known.where(known.notna(), None).to_numpy().tolist())
 
 
-def _joints_csv(run: ComparisonRun) -> bytes:
-    """As `_csv` writes the joints of all answers, without a frame: they are many."""
-    stream = io.StringIO()
+def _joints_csv(run: ComparisonRun) -> str:
+    """The joints of all answers, without a frame: they are many."""
     rows = (row for item in run.cases for result in item.results for row in joint_rows(item.case, result))
-    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
-    writer.writerow([column.name for column in ANSWERED])
-    writer.writerows([_field(column.value(row)) for column in ANSWERED] for row in rows)
-    return stream.getvalue().encode()
+    return csv_text([column.name for column in ANSWERED], ([column.value(row) for column in ANSWERED] for row in rows))
 
 
-def _bars_csv(run: ComparisonRun) -> bytes:
+def _bars_csv(run: ComparisonRun) -> str:
     """The forces of ties and props in all answers, in the columns of `BARS` after case and method."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
-    writer.writerow(["case", "method", *(column.name for column in BARS)])
-    for item in run.cases:
-        for result in item.results:
-            for bar in bar_forces_of(item.case, result):
-                row = [item.case.id, result.method, *(column.value(bar) for column in BARS)]
-                writer.writerow([_field(value) for value in row])
-    return stream.getvalue().encode()
-
-
-def _field(value: Any) -> Any:
-    if isinstance(value, list | dict):
-        return json.dumps(value)
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return "" if value is None else cell(value)
+    rows = (
+        (item.case.id, result.method, *(column.value(bar) for column in BARS))
+        for item in run.cases
+        for result in item.results
+        for bar in bar_forces_of(item.case, result)
+    )
+    return csv_text(["case", "method", *(column.name for column in BARS)], rows)
 
 
 def _comparison_frame(run: ComparisonRun) -> pd.DataFrame:
