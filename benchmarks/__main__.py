@@ -38,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     pin()
     if given and given[0] in benchmarks():
         code = int(import_module(f"benchmarks.{given[0]}").main(given[1:]) or 0)
-        sys.stdout.flush()  # so that a reader who left is noticed here, and told as the commands do
+        sys.stdout.flush()  # so that a reader who left is noticed here, and reported as the commands do
         return code
     for name in benchmarks():
         say(f"{name:<20} {measures(name)}")

@@ -26,9 +26,9 @@ LOWER = 1e-7
 """Relative difference from which a multiplier is lower."""
 
 
-def least(problem: Problem, newton: NewtonMatrix, ladder: tuple[float, ...]) -> float:
-    """The least multiplier (scaled) that central paths and a ladder lead to; infinite where they lead to none."""
-    search = Search(problem, newton, 0, Budget(replace(Sizes().limits("normal", problem), ladder=ladder)))
+def least(problem: Problem, newton: NewtonMatrix, continuation: tuple[float, ...]) -> float:
+    """The least multiplier (scaled) that central paths and a friction continuation lead to, or infinity."""
+    search = Search(problem, newton, 0, Budget(replace(Sizes().limits("normal", problem), continuation=continuation)))
     explore(search, [ReducedFriction(), CentralPath(), FrictionContinuation()])
     return search.record.least
 
@@ -41,22 +41,22 @@ def suits(wall: Assembly) -> bool:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     count = int([*(sys.argv[1:] if arguments is None else arguments), "40"][0])
-    ladders = {"none": ()} | {
-        f"without {step:g}": tuple(r for r in Sizes().ladder if r != step) for step in Sizes().ladder
+    continuations = {"none": ()} | {
+        f"without {step:g}": tuple(r for r in Sizes().continuation if r != step) for step in Sizes().continuation
     }
-    gains = {name: [0, 0] for name in ladders}
+    gains = {name: [0, 0] for name in continuations}
     walls, began = 0, time.process_time()
     for wall in (wall for seed in range(count) for wall in (random_wall(seed), drawn(seed, 3, 5))):
         if not suits(wall):
             continue
         problem = make_problem(wall)
         newton = NewtonMatrix(problem)
-        whole = least(problem, newton, Sizes().ladder)
+        whole = least(problem, newton, Sizes().continuation)
         if whole == float("inf"):
             continue
         walls += 1
-        for name, ladder in ladders.items():
-            other = least(problem, newton, ladder)
+        for name, continuation in continuations.items():
+            other = least(problem, newton, continuation)
             gains[name][0] += other > whole + LOWER * abs(whole)
             gains[name][1] += other < whole - LOWER * abs(whole)
     print(f"{walls} walls, {time.process_time() - began:.0f} CPU s\n| steps | higher | lower |\n|---|---|---|")

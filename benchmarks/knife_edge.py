@@ -27,7 +27,7 @@ from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
 
 METHODS = ("la", "la-associated", "fe", "fe-newton", "de", "de-soft")
-TOLD, UNTOLD = (2, 3, 4, 5, 6), (9, 10, 12)
+RESOLVED, UNRESOLVED = (2, 3, 4, 5, 6), (9, 10, 12)
 """Powers k of the shares 10^-k that the numbers of a wall tell from none, and that they do not."""
 EXACT = 1e-6
 """Relative accuracy of multipliers that are exact: near the limit of a wall they lose up to five digits of it."""
@@ -138,19 +138,19 @@ KINDS = {
 """Walls by kind, each a description and a multiplier by the share it is set off its limit."""
 
 
-def edges(kind: str, told: Sequence[int] = TOLD, untold: Sequence[int] = UNTOLD) -> Iterator[Edge]:
-    """Walls of a kind at its limit and off it to either side, by shares 10^-k that are told and that are not."""
-    yield _edge(kind, 0.0, told=False)
-    for powers, by_form in ((told, True), (untold, False)):
+def edges(kind: str, resolved: Sequence[int] = RESOLVED, unresolved: Sequence[int] = UNRESOLVED) -> Iterator[Edge]:
+    """Walls of a kind at its limit and off it to either side, by shares 10^-k that are resolved and that are not."""
+    yield _edge(kind, 0.0, resolved=False)
+    for powers, by_form in ((resolved, True), (unresolved, False)):
         for power in powers:
             for sign in (1.0, -1.0):
-                yield _edge(kind, sign * 10.0**-power, told=by_form)
+                yield _edge(kind, sign * 10.0**-power, resolved=by_form)
 
 
-def _edge(kind: str, share: float, told: bool) -> Edge:
+def _edge(kind: str, share: float, resolved: bool) -> Edge:
     described, multiplier = KINDS[kind](share)
     wall = build(Wall.model_validate(described)).assembly
-    return Edge(f"{kind}, {share:+.0e}", wall, multiplier if told else None)
+    return Edge(f"{kind}, {share:+.0e}", wall, multiplier if resolved else None)
 
 
 def verdict(edge: Edge, result: Result, judged: Judgement) -> str:

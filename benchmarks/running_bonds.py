@@ -23,7 +23,7 @@ MOST = {"de": 465, "fe": 2485}
 METHODS = ("fe", "la-associated", "la", "de")
 
 
-def told(method: str, answer: Answer) -> str:
+def described(method: str, answer: Answer) -> str:
     """What stands beside the value: the bracket of `de`, when `la` reached its value."""
     if method == "la" and answer.multiplier is not None:
         return f"reached after {first_below(answer, (1.0 + SAME) * answer.multiplier):.2f} s"
@@ -48,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             answer = method.solve(wall, method.Settings())
             spent = time.process_time() - start
             value = "none" if answer.multiplier is None else f"{answer.multiplier:.7f}"
-            print(f"| {bricks} | {name} | {value} | {spent:.2f} | {told(name, answer)} |", flush=True)
+            print(f"| {bricks} | {name} | {value} | {spent:.2f} | {described(name, answer)} |", flush=True)
         direct, value = least_time(1, by_clarabel, wall)
         print(f"| {bricks} | Clarabel called directly | {value:.7f} | {direct:.2f} | |", flush=True)
     return 0

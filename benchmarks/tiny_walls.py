@@ -52,8 +52,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if lower.max() > 1.0 + AGREES:
             passed.append(seed)
         if lower.max() > 1.0 + AGREES or lower[0] < 1.0 - PROVED:
-            told = f"{seed:4d} {wall.n_free} blocks, {wall.n_interfaces} interfaces, least {least:.9f}, bounds over it"
-            print(f"{told} {lower[0]:.9f} {lower[1]:.9f}", flush=True)
+            row = f"{seed:4d} {wall.n_free} blocks, {wall.n_interfaces} interfaces, least {least:.9f}, bounds over it"
+            print(f"{row} {lower[0]:.9f} {lower[1]:.9f}", flush=True)
     print(
         f"{known} of {count} walls collapse; the bound passes the least multiplier on {len(passed)}; windows below it "
         f"close {closed[0]}, cases from a tenth above it come to it on {closed[1]}; {time.process_time() - began:.0f} s"

@@ -133,18 +133,18 @@ def licences_page(folder: Path) -> None:
         parts += ["", sentence, "", "| package | version | licence |", "|---|---|---|"]
         for name in names:
             try:
-                told = metadata(name)
+                about = metadata(name)
             except PackageNotFoundError:  # it is for another system or version of Python
                 continue
-            parts.append(f"| {name} | {told['Version']} | {_licence(told)} |")
+            parts.append(f"| {name} | {about['Version']} | {_licence(about)} |")
     (folder / "licences.md").write_text("\n".join(parts) + "\n", encoding="utf-8")
 
 
-def _licence(told: Any) -> str:
+def _licence(about: Any) -> str:
     """The licence that a package states, in a few words."""
-    stated = told.get("License-Expression")
-    marks = [mark.rsplit(" :: ", 1)[-1] for mark in told.get_all("Classifier") or () if mark.startswith("License ::")]
-    first = _one_line((told.get("License") or "").strip().split("\n")[0])
+    stated = about.get("License-Expression")
+    marks = [mark.rsplit(" :: ", 1)[-1] for mark in about.get_all("Classifier") or () if mark.startswith("License ::")]
+    first = _one_line((about.get("License") or "").strip().split("\n")[0])
     return _one_line(stated or ", ".join(marks) or first[:80] or "not stated")
 
 

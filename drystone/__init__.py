@@ -7,7 +7,7 @@
 0.500000, accepted
 
 `read_wall`, `build_wall`, `new_wall` and `library_wall` give a `Wall`; `analyse` runs one method in this process,
-`compare` many, each run in a process of its own; `judge` holds an answer against equilibrium, yield and flow. `sweep`
+`compare` many, each run in a process of its own; `judge` checks an answer for equilibrium, yield and flow. `sweep`
 varies friction, proportions or seeds over many walls, and `check` compares methods with checked references.
 `factor` is the factor of safety on friction, `domain` the interaction domain of two live loads, and `capacity` the
 capacity curve, on updated geometry; `shake` and `least_shaking` follow walls in time on ground that accelerates.

@@ -218,7 +218,7 @@ def analyse_by(
 
 
 def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judgement:
-    """Hold an answer from anywhere against equilibrium, yield, flow and virtual work, by code that no method shares.
+    """Check an answer from anywhere for equilibrium, yield, flow and virtual work, by code that no method shares.
 
     >>> from drystone import new_wall
     >>> wall = new_wall("stack", count=1, friction=0.3)

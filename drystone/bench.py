@@ -267,7 +267,7 @@ def bench(
     limits: Limits | None = None,
     store: str | Path | None = None,
     fresh: bool = False,
-    told: pipeline.Told | None = None,
+    progress: pipeline.Progress | None = None,
 ) -> Bench:
     """Run methods on a set of walls, each run in a process of its own, judged.
 
@@ -276,7 +276,7 @@ def bench(
         methods: names of methods; None: those of the library.
         jobs: runs at a time.
         limits: of one run; None: the usual ones.
-        store, fresh, told: as of `compare`.
+        store, fresh, progress: as of `compare`.
 
     Raises:
         InputError: an unknown set or method.
@@ -292,7 +292,7 @@ def bench(
         memory_bytes=limits.memory_bytes,
         store=store,
         fresh=fresh,
-        told=told,
+        progress=progress,
         title=f'set "{chosen.name}", version {chosen.version}',
         command=f"drystone bench --set {chosen.name}",
     )

@@ -242,12 +242,12 @@ def _with_certificate(item: CaseResults, seconds: float) -> CaseResults:
     judged = [each for each in item.results if each.traits.seeks_least and each.judge.accepted]
     found = [each for each in judged if each.multiplier is not None]
     low = [each for each in found if _below(each, certified)]
-    told = ", ".join(f"{each.method} {each.multiplier:.9g}" for each in low or found) or "no method has a state"
+    states = ", ".join(f"{each.method} {each.multiplier:.9g}" for each in low or found) or "no method has a state"
     gate = Gate(
         name="certificate",
         statement=statement,
         passed=not low if found else None,
-        sentence=f"{told}; bound {certified.bound:.9g} ({certified.source})",
+        sentence=f"{states}; bound {certified.bound:.9g} ({certified.source})",
     )
     return replace(item, gates=[*item.gates, gate], certified=certified)
 

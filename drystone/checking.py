@@ -60,7 +60,7 @@ def check(
     jobs: int = 1,
     store: str | Path | None = None,
     fresh: bool = False,
-    told: pipeline.Told | None = None,
+    progress: pipeline.Progress | None = None,
 ) -> Check:
     """Hold the methods to the checked references of walls.
 
@@ -70,7 +70,7 @@ def check(
         jobs: runs at a time.
         store: file in which results are kept and looked for; None: nowhere.
         fresh: run again what is in the store.
-        told: called after each run with the run, its result and whether it was stored.
+        progress: called after each run with the run, its result and whether it was stored.
 
     Raises:
         InputError: a method that a reference names does not exist, or a store that is damaged.
@@ -82,7 +82,7 @@ def check(
     chosen = map(library_wall, library_walls()) if walls is None else [walls] if isinstance(walls, Wall) else walls
     plan = planned([wall.case for wall in chosen], tier)
     with pipeline.opened_at(store) as opened:
-        return held(plan, opened, jobs, fresh=fresh, told=told)
+        return held(plan, opened, jobs, fresh=fresh, progress=progress)
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,10 @@ class Plan:
 
 
 def held(
-    plan: Plan, store: Store | None, jobs: int, *, fresh: bool = False, told: pipeline.Told | None = None
+    plan: Plan, store: Store | None, jobs: int, *, fresh: bool = False, progress: pipeline.Progress | None = None
 ) -> Check:
     """What the runs of a plan find, or the store has of them, beside what is known; arguments as of `check`."""
-    results = pipeline.execute(plan.runs, store, jobs, fresh=fresh, told=told)
+    results = pipeline.execute(plan.runs, store, jobs, fresh=fresh, progress=progress)
     lines = regression.lines(plan.gated, results[: len(plan.gated)])
     rest = zip(plan.certified, results[len(plan.gated) :], strict=True)
     return Check(lines + [certificate_line(run, result) for run, result in rest])

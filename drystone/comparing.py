@@ -94,13 +94,13 @@ def compare(
     store: str | Path | None = None,
     settings: Mapping[str, dict[str, Any]] | None = None,
     fresh: bool = False,
-    told: pipeline.Told | None = None,
+    progress: pipeline.Progress | None = None,
     title: str = "",
     command: str = "drystone.compare",
     studies: Sequence[dict[str, Any]] = (),
     proof_seconds: float = 60.0,
 ) -> Comparison:
-    """Run methods on walls, judge every answer, and hold them against references and theory.
+    """Run methods on walls, judge every answer, and compare them with references and theory.
 
     Args:
         walls: one wall or several; one with load cases stands for all of them.
@@ -113,7 +113,7 @@ def compare(
         store: file in which results and what the comparison consisted of are kept and looked for; None: nowhere.
         settings: of methods, by name, where not the defaults.
         fresh: run again what is in the store.
-        told: called after each run with the run, its result and whether it was stored.
+        progress: called after each run with the run, its result and whether it was stored.
         title, command: what the report says was compared, and how to repeat it.
         studies: for the report to draw, as `reports.charts.studies` describes them.
         proof_seconds: of CPU time, by wall, for checking certificates that methods hand on [s].
@@ -142,7 +142,7 @@ def compare(
             opened,
             executor,
             fresh=fresh,
-            told=told,
+            progress=progress,
             studies=studies,
             proof_seconds=proof_seconds,
         )
@@ -162,7 +162,7 @@ def compared(
     executor: Executor,
     *,
     fresh: bool = False,
-    told: pipeline.Told | None = None,
+    progress: pipeline.Progress | None = None,
     studies: Sequence[dict[str, Any]] = (),
     certified: bool = True,
     proof_seconds: float = 60.0,
@@ -175,12 +175,12 @@ def compared(
         runs: of these cases.
         store: where results are looked for and kept; None: nowhere.
         executor: where runs are made.
-        fresh, told: as of `compare`.
+        fresh, progress: as of `compare`.
         studies: for the report to draw.
         certified: whether certificates are looked at; a page that shows nothing of them can leave it.
         proof_seconds: as of `compare`.
     """
-    results = pipeline.execute(runs, store, 1, fresh=fresh, told=told, executor=executor)
+    results = pipeline.execute(runs, store, 1, fresh=fresh, progress=progress, executor=executor)
     run = engine.comparison_run(title, command, cases, runs, results)
     if studies:
         run.provenance["studies"] = list(studies)

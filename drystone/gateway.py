@@ -106,7 +106,7 @@ def _multiplier(found: Result) -> float:
 def serve(
     template: TemplateWall,
     port: int = 4242,
-    told: Callable[[str], None] = print,
+    report: Callable[[str], None] = print,
     ready: Callable[[str], None] = print,
 ) -> None:
     """Answer clients of UM-Bridge until the process is ended; a wall without an answer is an error of the protocol.
@@ -114,7 +114,7 @@ def serve(
     Args:
         template: the wall. Its first input are all parameters, its outputs are `OUTPUTS`, a number each.
         port: of this machine, on which it listens.
-        told: called with a sentence on each error.
+        report: called with a sentence on each error.
         ready: called with the address once it answers there.
 
     Raises:
@@ -140,7 +140,7 @@ def serve(
             try:
                 return [[number] for number in template(parameters[0])]
             except InputError as error:
-                told(str(error))
+                report(str(error))
                 return None  # umbridge answers with an error of the protocol, "InvalidOutput"
 
     try:

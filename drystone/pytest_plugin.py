@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The option `--drystone` and the field `drystone` of pytest's own configuration."""
-    told = "collect case.toml files: hold their checked references, of the quick or the full tier"
-    parser.getgroup("drystone").addoption("--drystone", choices=("quick", "full"), help=told)
-    parser.addini("drystone", told, default="")
+    meaning = "collect case.toml files: hold their checked references, of the quick or the full tier"
+    parser.getgroup("drystone").addoption("--drystone", choices=("quick", "full"), help=meaning)
+    parser.addini("drystone", meaning, default="")
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:

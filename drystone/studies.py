@@ -90,7 +90,7 @@ class Sweep:
 
         Args:
             path: of the page.
-            command: how to repeat it, told on the page.
+            command: how to repeat it, shown on the page.
             data: paths of files, from the folder of the page, to which it has links.
         """
         from harness.engine.sweep.summary import grid_of
@@ -126,7 +126,7 @@ def sweep(
     store: str | Path | None = None,
     executor: Executor | None = None,
     fresh: bool = False,
-    told: Counted | None = None,
+    progress: Counted | None = None,
     folders: Sequence[Path] = (),
 ) -> Sweep:
     """Make every run of a study, each in a process of its own, and judge every answer.
@@ -144,7 +144,7 @@ def sweep(
         store: file in which results are kept and looked for; None: nowhere.
         executor: where runs are made instead, as on a cluster.
         fresh: run again what is in the store.
-        told: called after each run with whether it came from the store.
+        progress: called after each run with whether it came from the store.
         folders: more places where cases of a study are looked for.
 
     Raises:
@@ -162,8 +162,8 @@ def sweep(
     runs = expand(study, sources)
     with _opened(store) as opened:
         where = executor or LocalExecutor(jobs)
-        telling = nullcontext(told or _silent)
-        return Sweep(study, rows_of(study, runs, opened, where, fresh=fresh, telling=lambda _: telling))
+        counting = nullcontext(progress or _silent)
+        return Sweep(study, rows_of(study, runs, opened, where, fresh=fresh, counting=lambda _: counting))
 
 
 def rows_of(
@@ -173,7 +173,7 @@ def rows_of(
     executor: Executor,
     *,
     fresh: bool = False,
-    telling: Callable[[int], AbstractContextManager[Counted]] = lambda _: nullcontext(_silent),
+    counting: Callable[[int], AbstractContextManager[Counted]] = lambda _: nullcontext(_silent),
 ) -> list[Row]:
     """The rows of all runs of a study, made or from the store; neighbours share what they found, if it says so.
 
@@ -183,7 +183,7 @@ def rows_of(
         store: where results are looked for and kept.
         executor: where runs are made.
         fresh: make again what is in the store.
-        telling: opened with the number of runs of each round, gives what is called after each.
+        counting: opened with the number of runs of each round, gives what is called after each.
 
     Returns:
         One row a run, in the order of the study.
@@ -191,10 +191,10 @@ def rows_of(
 
     def make(some: Sequence[SweepRun]) -> list[Row]:
         rows: dict[int, Row] = {}
-        with telling(len(some)) as told, closing(running(some, store, executor, fresh=fresh)) as ended:
+        with counting(len(some)) as progress, closing(running(some, store, executor, fresh=fresh)) as ended:
             for run, row, stored in ended:
                 rows[run.number] = row
-                told(stored)
+                progress(stored)
         return [rows[number] for number in sorted(rows)]
 
     rows = make(runs)

@@ -133,7 +133,7 @@ def build_wall(document: Mapping[str, Any] | Description, name: str = "wall") ->
 
 
 def _check(case: Case) -> None:
-    """Faults are told when a wall is made and not at its first use."""
+    """Faults are reported when a wall is made and not at its first use."""
     for each in load_cases_of(case):
         _ = each.built
 

@@ -17,8 +17,8 @@ def main() -> None:
     """Print the answer."""
     wall = drystone.library_wall("slide")
     stored: list[bool] = []
-    for told in (None, lambda _run, _result, kept: stored.append(kept)):
-        compared = drystone.compare(wall, ["la-associated"], store="results.sqlite", told=told)
+    for progress in (None, lambda _run, _result, kept: stored.append(kept)):
+        compared = drystone.compare(wall, ["la-associated"], store="results.sqlite", progress=progress)
     print(f"la-associated {compared.results[0].multiplier:.6f}")
     print(f"from the store: {sum(stored)} of {len(stored)}")
     print(f"references and statements of theory not met: {len(compared.violations)}")

@@ -36,7 +36,7 @@ class DummySettings(Settings):
 
 
 class Dummy(Method):
-    """Answers "stands" with no forces, or fails in the way it is told to."""
+    """Answers "stands" with no forces, or fails in the way it is asked to."""
 
     name = "dummy"
     family = "dummy"

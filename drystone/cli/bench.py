@@ -80,9 +80,9 @@ def bench_(
         walls = {wall.name for wall in chosen.walls}
         check_table(table, str(path), {chosen.name}, {chosen.version}, walls, names)
     preload_methods(names)
-    with terminal.progress(len(chosen.walls) * len(names), quiet=as_json) as told:
+    with terminal.progress_bar(len(chosen.walls) * len(names), quiet=as_json) as progress:
         made = bench(
-            name, names, jobs=jobs, limits=Limits(seconds, memory * 2**20), store=store, fresh=fresh, told=told
+            name, names, jobs=jobs, limits=Limits(seconds, memory * 2**20), store=store, fresh=fresh, progress=progress
         )
     for path, table in zip(others, tables, strict=True):
         made = made.joined(table, str(path))

@@ -64,8 +64,8 @@ def check(
     for case in chosen:
         warn(case)
     plan = planned(chosen, tier)
-    with open_store(store) as opened, terminal.progress(len(plan.runs), quiet=as_json) as told:
-        checked = held(plan, opened, jobs, fresh=fresh, told=told)
+    with open_store(store) as opened, terminal.progress_bar(len(plan.runs), quiet=as_json) as progress:
+        checked = held(plan, opened, jobs, fresh=fresh, progress=progress)
     lines = checked.lines
     if junit is not None:
         write_junit(f"drystone check, {tier} tier", tests_of_check(lines), junit)
@@ -112,8 +112,8 @@ def baseline(
     recorded_in = path or shipped_cases() / "baseline.json"
     recorded = recording.read_baseline(recorded_in)
     runs = [run for case in chosen for run in plan_case(case, None, Limits())]
-    with open_store(store) as opened, terminal.progress(len(runs), quiet=as_json) as told:
-        results = pipeline.execute(runs, opened, jobs, told=told)
+    with open_store(store) as opened, terminal.progress_bar(len(runs), quiet=as_json) as progress:
+        results = pipeline.execute(runs, opened, jobs, progress=progress)
     rows = recording.compare_with(recorded, runs, results)
     if as_json:
         print_json({"action": action, "rows": rows})

@@ -113,7 +113,7 @@ def compare(
     planned = [run for case in chosen for run in plan_case(case, methods, limits, settings=asked)]
     preload_methods(run.method for run in planned)
     study = [] if studied is None else [curve_of_shipped(studied, jobs, store, fresh=fresh, quiet=as_json)]
-    with terminal.progress(len(planned), quiet=as_json) as told:
+    with terminal.progress_bar(len(planned), quiet=as_json) as progress:
         made = make_comparison(
             [Wall(case) for case in chosen],
             methods,
@@ -123,7 +123,7 @@ def compare(
             store=store,
             settings=asked,
             fresh=fresh,
-            told=told,
+            progress=progress,
             title=title,
             command=_command_line(),
             studies=study,
@@ -189,8 +189,8 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
         chosen = [named, reversed_live(named)]
     runs = [planned for case in chosen for planned in plan_case(case, None, Limits())]
     executor = LocalExecutor(os.cpu_count() or 1)
-    with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
-        made = compared(title, _command_line(), chosen, runs, opened, executor, told=told)
+    with open_store(store) as opened, terminal.progress_bar(len(runs), quiet=False) as progress:
+        made = compared(title, _command_line(), chosen, runs, opened, executor, progress=progress)
     page = folder / f"{title}-appendix.html"
     write_appendix(made, page)
     say(f"Appendix: {page}")

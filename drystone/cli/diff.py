@@ -1,4 +1,4 @@
-"""The command that holds two sets of answers against each other: diff."""
+"""The command that compares two sets of answers: diff."""
 
 from __future__ import annotations
 

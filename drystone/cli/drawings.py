@@ -60,9 +60,9 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
     advice = suggested(plateaus)
     if as_json:
         rows = [{"number": k} | asdict(mark) | {"text": str(mark)} for k, mark in enumerate(looked.marks, start=1)]
-        told = {f"{kind}s": [row for row in rows if row["kind"] == kind] for kind in ("fault", "doubt")}
+        by_kind = {f"{kind}s": [row for row in rows if row["kind"] == kind] for kind in ("fault", "doubt")}
         print_json(
-            {"joints": joints, **told, "suggested_tolerance": advice[0] if advice else None}
+            {"joints": joints, **by_kind, "suggested_tolerance": advice[0] if advice else None}
             | {"tolerances": [asdict(plateau) for plateau in plateaus]}
         )
     else:

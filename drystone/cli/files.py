@@ -46,9 +46,9 @@ KEPT = 50
 """Load steps of a series, unless a setting says otherwise: two seconds of a film."""
 
 
-def _endings(use: str, told: str) -> str:
+def _endings(use: str, meaning: str) -> str:
     """The formats that are read or written, for a help text: a row each."""
-    rows = [f"{' '.join(item.suffixes):<10s}{getattr(item, told)}" for item in FORMATS if getattr(item, use)]
+    rows = [f"{' '.join(item.suffixes):<10s}{getattr(item, meaning)}" for item in FORMATS if getattr(item, use)]
     return "\n".join(["\b", *rows])
 
 
@@ -126,8 +126,8 @@ def export(
     result = None
     if method is not None:
         check_taken(load_method(method), found, "--method")
-        with open_store(store) as opened, terminal.progress(1, quiet=True) as told:
-            (result,) = pipeline.execute([Run(found, method, chosen, Limits())], opened, 1, told=told)
+        with open_store(store) as opened, terminal.progress_bar(1, quiet=True) as progress:
+            (result,) = pipeline.execute([Run(found, method, chosen, Limits())], opened, 1, progress=progress)
         if result.status is not Status.OK or result.finding is Finding.NONE:
             raise InputError(f"{result.method} has no answer to write: {result.sentence}", element=found.id)
         say(f"drystone: {found.id}: {result.sentence}", err=True)

@@ -36,7 +36,7 @@ def learn(output: Path, jobs: int, store: Path) -> None:
     chosen = find_cases(("single-block", *WALLS), None, ())
     runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]
     command, title = shlex.join(["drystone", *sys.argv[1:]]), "Why three methods differ"
-    with open_store(store) as opened, terminal.progress(len(runs), quiet=False) as told:
-        made = compared(title, command, chosen, runs, opened, LocalExecutor(jobs), told=told, certified=False)
+    with open_store(store) as opened, terminal.progress_bar(len(runs), quiet=False) as progress:
+        made = compared(title, command, chosen, runs, opened, LocalExecutor(jobs), progress=progress, certified=False)
     write_learn(made, output)
     say(f"Page: {output}")

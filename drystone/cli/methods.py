@@ -71,7 +71,7 @@ def add(name: str, command: str, lines: bool, arrays: bool, takes: tuple[str, ..
 
 
 def _describes_itself(name: str, entry: dict[str, Any], path: Path) -> bool:
-    """Whether a program prints a description; one that is wrong is told of, and the program taken as it is.
+    """Whether a program prints a description; one that is wrong is reported, and the program taken as it is.
 
     Raises:
         InputError: the program cannot be started, or an entry cannot be.

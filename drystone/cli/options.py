@@ -1,4 +1,4 @@
-"""What the commands share: options, exit codes, the files they also write, and how an input error is told."""
+"""What the commands share: options, exit codes, the files they also write, and how an input error is printed."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from harness.model.errors import InputError
 from harness.model.reading import validate
 
 _LINE_SECONDS = 10.0
-"""How often progress is told where there is no terminal."""
+"""How often progress is printed where there is no terminal."""
 
 
 @dataclass(frozen=True)
@@ -75,8 +75,8 @@ def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: 
     with open_store(store) as opened:
 
         def make(some: Sequence[SweepRun]) -> list[Row]:
-            telling = partial(progress, quiet=quiet)
-            return rows_of(study, some, opened, LocalExecutor(jobs), fresh=fresh, telling=telling)
+            counting = partial(progress_bar, quiet=quiet)
+            return rows_of(study, some, opened, LocalExecutor(jobs), fresh=fresh, counting=counting)
 
         if amount.seconds is None:
             return curve_of(study, make(runs))
@@ -86,7 +86,7 @@ def curve_of_shipped(words: str, jobs: int, store: Path, *, fresh: bool, quiet: 
 def in_time(
     runs: Sequence[SweepRun], make: Callable[[Sequence[SweepRun]], list[Row]], seconds: float, least: int
 ) -> list[Row]:
-    """The rows of as many seeds as fit in a time, told by the clock of the runs, so that the store gives the same.
+    """The rows of as many seeds as fit in a time, by the clock of the runs, so that the store gives the same.
 
     Args:
         runs: of a study with seeds.
@@ -110,7 +110,7 @@ def in_time(
 
 
 @contextmanager
-def progress(total: int, *, quiet: bool) -> Iterator[Counted]:
+def progress_bar(total: int, *, quiet: bool) -> Iterator[Counted]:
     """Something to call after each run: a bar with rate and time left, or a line now and then."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn

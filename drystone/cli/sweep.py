@@ -26,7 +26,7 @@ from drystone.cli.options import (
     store_option,
 )
 from drystone.cli.settings import method_settings
-from drystone.cli.studies import duration, progress
+from drystone.cli.studies import duration, progress_bar
 from drystone.cli.terminal import print_rows
 from drystone.studies import Sweep, changed, rows_of, shipped_studies, shipped_study, study_file
 from harness.engine.executors import Executor, LocalExecutor
@@ -95,7 +95,8 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
         check_output(folder.with_suffix(".html"))
     with open_store(store) as opened:
         executor = _executor(scheduler, jobs)
-        rows = rows_of(asked, runs, opened, executor, fresh=fresh, telling=partial(progress, quiet=rest["as_json"]))
+        counting = partial(progress_bar, quiet=rest["as_json"])
+        rows = rows_of(asked, runs, opened, executor, fresh=fresh, counting=counting)
     _leave(Sweep(asked, rows), folder, rest)
 
 
@@ -134,7 +135,7 @@ def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
         done.report(page, shlex.join(["drystone", *sys.argv[1:]]), names)
     rejected = done.rejected
     statuses = Counter(str(row["status"]) for row in done.rows)
-    told = {
+    answer = {
         "study": done.study.name,
         "runs": len(done.rows),
         "statuses": dict(statuses),
@@ -143,7 +144,7 @@ def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
         "report": None if rest["no_report"] else str(page),
     }
     if rest["as_json"]:
-        print_json(told)
+        print_json(answer)
     else:
         say(f"{len(done.rows):,} runs: " + ", ".join(f"{count:,} {name}" for name, count in statuses.items())
             + (f"; the judge rejects {rejected:,}" if rejected else ""))  # fmt: skip

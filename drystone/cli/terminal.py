@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from harness.engine.pipeline import Told
+from harness.engine.pipeline import Progress
 from harness.engine.regression import violations
 from harness.engine.run import Run
 from harness.model.bar_forces import BARS, bar_forces_of
@@ -43,7 +43,7 @@ def escape(text: str) -> str:
 
 
 @contextmanager
-def progress(total: int, *, quiet: bool = False) -> Iterator[Told]:
+def progress_bar(total: int, *, quiet: bool = False) -> Iterator[Progress]:
     """Something to call after each run: a bar on a terminal, plain lines on standard error otherwise."""
     from rich.console import Console
 
@@ -313,8 +313,8 @@ def print_check(lines: list[dict[str, Any]]) -> None:
     for line in lines:
         mark = VERDICT_TEXTS[Verdict(line["verdict"])]
         where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
-        told = f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]"
-        print(visible(told))
+        line_text = f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]"
+        print(visible(line_text))
     count = Counter(line["verdict"] for line in lines)
     tested = len(lines) - count["not_tested"]
     left = f"; {count['not_tested']} not tested, because a package is missing" if count["not_tested"] else ""

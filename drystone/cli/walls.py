@@ -208,8 +208,8 @@ def _answers(case: str, methods: list[str], store: Path, folders: tuple[Path, ..
     warn(found)
     for name in methods:
         check_taken(load_method(name), found, "--methods")
-    with open_store(store) as opened, terminal.progress(len(methods), quiet=True) as told:
-        results = pipeline.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, told=told)
+    with open_store(store) as opened, terminal.progress_bar(len(methods), quiet=True) as progress:
+        results = pipeline.execute([Run(found, name, {}, Limits()) for name in methods], opened, 1, progress=progress)
     for result in results:
         if result.status is not Status.OK or result.finding in (Finding.NONE,):
             raise InputError(f"{result.method} has no answer to draw: {result.sentence}", element=found.id)

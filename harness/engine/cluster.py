@@ -38,8 +38,8 @@ Identity = dict[str, str]
 
 def identity(methods: Collection[str]) -> Identity:
     """What must be the same on every machine: the code of the methods and the versions of what computes."""
-    told = {name: number for name, number in versions().items() if name != "commit"}
-    return told | {f"{CODE}{method}": code_version(method) for method in sorted(methods)}
+    known = {name: number for name, number in versions().items() if name != "commit"}
+    return known | {f"{CODE}{method}": code_version(method) for method in sorted(methods)}
 
 
 def difference(ours: Identity, theirs: Identity) -> str:

@@ -204,7 +204,7 @@ class Child:
     def begin(self, task: Task, case: str, *, last: bool = False) -> None:
         """Send a task. With `last` its row is made here whatever happens; it was begun elsewhere before."""
         self._run, self._last = _RunningJob(task, case, self._process.pid), last
-        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is told by the next look
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is noticed by the next look
             self._connection.send(task)
 
     def look(self) -> TimedResult | Retry | None:

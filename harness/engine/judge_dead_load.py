@@ -9,7 +9,7 @@ from harness.engine.judge_decision import countable, decide, said_of
 from harness.engine.residuals import collapse_residuals, dissipated_by_strength, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, AnswerDetails
-from harness.model.limit import accuracy, gross_power, least_told
+from harness.model.limit import accuracy, gross_power, smallest_resolved
 from harness.model.result import Judgement, Result, relative_velocities
 
 IMMENSE = 1e7
@@ -31,7 +31,7 @@ GAIN = 1e-12
 def judge_limit(
     assembly: Assembly, forces: FloatArray | None, mechanism: FloatArray | None, result: Result, tolerance: float
 ) -> Judgement:
-    """At its limit: forces under the dead load, and a dilatant mechanism whose multiplier is zero as far as told.
+    """At its limit: forces under the dead load, and a dilatant mechanism whose multiplier is zero within accuracy.
 
     No forces bear a multiplier above that of such a mechanism. Both may be those of statics, beside the forces and the
     motion of the method: `details["dead_forces"]` and `details["dilatant_mechanism"]`. What is tolerated is what the
@@ -54,14 +54,14 @@ def judge_limit(
     stated = DEAD_BAR_FORCES if by_statics[0] is not None else BAR_FORCES
     if isinstance(beyond := tensions_beyond(assembly, result.details, stated), str):
         return said_of(tolerance, False, beyond)
-    within, told = accuracy(assembly), least_told(assembly, mechanism)
+    within, smallest = accuracy(assembly), smallest_resolved(assembly, mechanism)
     what = "The collapse state (associated flow) under the dead load"
     residuals = collapse_residuals(assembly, forces, 0.0, mechanism, "associated", beyond)
-    if told > 0.0:
-        residuals["virtual_work"] *= within * assembly.load_unit / told
+    if smallest > 0.0:
+        residuals["virtual_work"] *= within * assembly.load_unit / smallest
     said = decide(residuals, within, f"{what} was")
     at = _multiplier_of(assembly, mechanism)
-    if said.accepted or not 0.0 < abs(at) <= min(told, _MOST_OPEN * within * assembly.load_unit):
+    if said.accepted or not 0.0 < abs(at) <= min(smallest, _MOST_OPEN * within * assembly.load_unit):
         return said
     return decide(
         collapse_residuals(assembly, forces, at, mechanism, "associated", beyond),
@@ -93,8 +93,8 @@ def judge_fall(assembly: Assembly, mechanism: FloatArray | None, result: Result,
         if mechanism.shape != (assembly.n_blocks, 3) or not countable(mechanism):
             return said_of(tolerance, False, f"`dilatant_mechanism` is not {assembly.n_blocks} finite triples.")
     elif result.flow == "approximate" or mechanism is None:
-        told = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
-        return said_of(tolerance, None, f"{told}; there is no proof that no equilibrium exists.")
+        reason = "The motion was measured, which is no proof" if mechanism is not None else "It gives no mechanism"
+        return said_of(tolerance, None, f"{reason}; there is no proof that no equilibrium exists.")
     proved, residuals = shown_to_fall(assembly, mechanism, tolerance)
     sentence = (
         "The dead load does positive work on the mechanism, with dilatant flow and supports at rest: no equilibrium "

@@ -19,7 +19,7 @@ from harness.model.result import Judgement, Result
 if TYPE_CHECKING:
     from harness.engine.store import Store
 
-Told = Callable[[Run, Result, bool], None]
+Progress = Callable[[Run, Result, bool], None]
 """Called after every run with the run, its result and whether it came from the store."""
 
 
@@ -42,7 +42,7 @@ def execute(
     jobs: int,
     *,
     fresh: bool = False,
-    told: Told | None = None,
+    progress: Progress | None = None,
     executor: Executor | None = None,
 ) -> list[Result]:
     """Results of runs, in their order. Each is stored as soon as it is there.
@@ -52,7 +52,7 @@ def execute(
         store: where results are looked for and kept; None: nowhere.
         jobs: number of child processes at a time.
         fresh: run what is in the store as well.
-        told: called after each run.
+        progress: called after each run.
         executor: where runs are made; None: in child processes of this machine.
 
     Raises:
@@ -62,8 +62,8 @@ def execute(
     with closing(executed(runs, store, executor or LocalExecutor(jobs), fresh=fresh)) as ended:
         for number, result, stored in ended:
             results[number] = result
-            if told:
-                told(runs[number], result, stored)
+            if progress:
+                progress(runs[number], result, stored)
     return [results[number] for number in range(len(runs))]
 
 

@@ -172,7 +172,7 @@ def find_cases(
         raise InputError("cases and a suite are given", "Give one or the other", "compare")
     if words:
         found = [_find_case(word, library) for word in dict.fromkeys(words)]
-        return _told_apart(list({Path(case.origin).resolve(): case for case in reversed(found)}.values())[::-1])
+        return _with_own_names(list({Path(case.origin).resolve(): case for case in reversed(found)}.values())[::-1])
     cases = [read_case(folder) for folder in library.values()]
     own = {path.resolve() for path in folders}
     wanted = suite or ("" if folders else otherwise)
@@ -211,7 +211,7 @@ def _find_case(word: str, library: dict[str, Path]) -> Case:
     )
 
 
-def _told_apart(cases: list[Case]) -> list[Case]:
+def _with_own_names(cases: list[Case]) -> list[Case]:
     """Cases under ids of their own: files of one name take those of their folders before it, as many as it needs."""
     named = cases
     most = max(len(Path(case.origin).resolve().parts) for case in cases)

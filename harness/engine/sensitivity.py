@@ -104,7 +104,7 @@ def advised(looked: Inspection) -> float | None:
         return None
     try:
         advice = suggested(over_tolerance(looked.wall))
-    except InputError:  # faults that no tolerance mends, which are told themselves
+    except InputError:  # faults that no tolerance mends, which are reported themselves
         return None
     return advice[0] if advice else None
 

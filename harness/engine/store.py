@@ -86,7 +86,7 @@ class Store:
         if path.exists() and not stat.S_ISREG(path.stat().st_mode):
             raise InputError("it is not a regular file", OTHER_FILE, source=str(path))
         try:
-            with self._told():
+            with self._faults_named():
                 self._connection = self._open_to_read() if read_only else _connect(path)
                 self._check(self._connection, read_only)
                 if not read_only:
@@ -154,7 +154,7 @@ class Store:
         return self._connection
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
+    def _faults_named(self) -> Iterator[None]:
         """Turn an error of the database into a sentence with its true cause."""
         try:
             yield
@@ -178,7 +178,7 @@ class Store:
         Raises:
             InputError: the store or what it holds under the key is damaged.
         """
-        with self._told():
+        with self._faults_named():
             query = (
                 "SELECT method, case_id, length(result), result, tolerance, run.environment, environment.content, "
                 "fields FROM run LEFT JOIN environment ON environment.id = run.environment WHERE key = ?"
@@ -201,7 +201,7 @@ class Store:
 
     def missing(self, element: str) -> InputError:
         """The fault of a result that ought to be here: an index of the file is damaged, or the run was taken out."""
-        with self._told():
+        with self._faults_named():
             verdict = str(self._open.execute("PRAGMA integrity_check(1)").fetchone()[0])
         if verdict != "ok":
             problem, remedy = cause(sqlite3.DatabaseError(f"malformed: {verdict}"), self.path)
@@ -220,7 +220,7 @@ class Store:
         environment = digest_of(shared)[:16]
         packed = zlib.compress(json.dumps(fields, separators=(",", ":")).encode())
         text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-        with self._told(), self._open:
+        with self._faults_named(), self._open:
             self._open.execute("INSERT OR IGNORE INTO environment (id, content) VALUES (?, ?)", (environment, shared))
             self._open.execute(
                 f"INSERT OR REPLACE INTO run ({', '.join(COLUMNS['run'])}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
@@ -240,7 +240,7 @@ class Store:
         """
         found: dict[str, dict[str, Any]] = {}
         environments: dict[str, dict[str, Any]] = {}
-        with self._told():
+        with self._faults_named():
             some = sorted(keys) if len(keys) <= _SOME_KEYS else None
             query = (
                 "SELECT key, method, case_id, tolerance, result, run.environment, environment.content "
@@ -261,7 +261,7 @@ class Store:
 
     def table(self) -> list[tuple[str, str, str, str, str, str, float | None, float | None]]:
         """Key, case, method, start, status, finding, multiplier and CPU seconds of every run, as quick as can be."""
-        with self._told():
+        with self._faults_named():
             return self._open.execute(f"SELECT {', '.join(TABLE)} FROM run").fetchall()
 
     def merge(self, other: Path) -> tuple[int, int]:
@@ -275,7 +275,7 @@ class Store:
         """
         with Store(other, read_only=True) as checked:
             count = len(checked.table())
-        with self._told():
+        with self._faults_named():
             self._open.execute("ATTACH DATABASE ? AS other", (f"{other.absolute().as_uri()}?mode=ro",))
             try:
                 with self._open:
@@ -297,7 +297,7 @@ class Store:
         Raises:
             InputError: the store cannot be written, with the cause.
         """
-        with self._told(), self._open:
+        with self._faults_named(), self._open:
             self._open.execute(
                 "INSERT INTO comparison (created, content) VALUES (?, ?)",
                 (created, sealed(json.dumps(content, allow_nan=False), (created,))),
@@ -309,7 +309,7 @@ class Store:
         Raises:
             InputError: the store or the comparison is damaged.
         """
-        with self._told():
+        with self._faults_named():
             row = self._open.execute("SELECT content, created FROM comparison ORDER BY number DESC LIMIT 1").fetchone()
         if row is None:
             return None
@@ -334,7 +334,7 @@ class Store:
 
 def _connect(path: Path, how: str = "") -> sqlite3.Connection:
     connection = sqlite3.connect(path.absolute().as_uri() + how, timeout=WAIT_SECONDS, uri=True)
-    # Damaged text is told where it is understood, with the run it belongs to.
+    # Damaged text is reported where it is understood, with the run it belongs to.
     connection.text_factory = lambda text: text.decode("utf-8", "replace")
     return connection
 

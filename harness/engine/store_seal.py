@@ -1,4 +1,4 @@
-"""Seals of what a store keeps: a text that another hand has changed is told from one that is whole."""
+"""Seals of what a store keeps: a text that another hand has changed is distinguished from one that is whole."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ LOADED, REPLACE = b"loaded", b"replace"
 """What a child says besides its records: the method is loaded and begins; another process must make this run."""
 
 _MOST_SAID = 500
-"""Characters that are told of an error."""
+"""Characters of an error that are kept."""
 
 
 def serve(engine: connection.Connection, folder: str) -> None:

@@ -92,19 +92,19 @@ def _solids(
     if not isinstance(value, dict):
         return
     data = value.get("data", value)
-    told = said | {key: value[key] for key in ("name", *_SUPPORT) if value.get(key) is not None}
+    inherited = said | {key: value[key] for key in ("name", *_SUPPORT) if value.get(key) is not None}
     if isinstance(data, dict):
-        told |= {key: data[key] for key in ("name", *_SUPPORT) if data.get(key) is not None}
+        inherited |= {key: data[key] for key in ("name", *_SUPPORT) if data.get(key) is not None}
         attributes = data.get("attributes")
         if isinstance(attributes, dict):
-            told |= {key: attributes[key] for key in ("name", *_SUPPORT) if attributes.get(key) is not None}
+            inherited |= {key: attributes[key] for key in ("name", *_SUPPORT) if attributes.get(key) is not None}
         matrix = data.get("transformation")
         if isinstance(matrix, dict):
             placed = placed @ np.asarray(matrix.get("data", matrix)["matrix"], float)
     solid = _solid(str(value.get("dtype", "")), data)
     if solid is not None:
         points, faces = solid
-        yield points @ placed[:3, :3].T + placed[:3, 3], faces, told
+        yield points @ placed[:3, :3].T + placed[:3, 3], faces, inherited
         return
     if isinstance(data, dict):
         for key, item in data.items():
@@ -112,9 +112,9 @@ def _solids(
                 for node, inner in item.items():
                     # A key that is a word is written in quotes, and is a name before that of the mesh, as "Box".
                     word = node.strip("'\"")
-                    yield from _solids(inner, told | ({"node": node} if word == node else {"key": word}), placed)
+                    yield from _solids(inner, inherited | ({"node": node} if word == node else {"key": word}), placed)
             elif key not in ("interface", "interfaces", "interactions", "edge"):
-                yield from _solids(item, told, placed)
+                yield from _solids(item, inherited, placed)
 
 
 def _solid(dtype: str, data: Any) -> tuple[FloatArray, list[list[int]]] | None:

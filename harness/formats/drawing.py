@@ -145,7 +145,7 @@ class Drawing:
             self.read[f"{kind}{where}"] += 1
 
     def _holes_in(self, stone: shapely.Polygon, holes: Iterable[Ring], what: str) -> tuple[FloatArray, ...]:
-        """Holes of a stone; one that is no polygon within it, or touches it or another along a length, is told."""
+        """Holes of a stone; one that is no polygon within it, or touches it or another along a length, is reported."""
         kept: list[FloatArray] = []
         for ring in holes:
             hole = _cleaned(ring, f"a hole of {what}")
@@ -226,9 +226,9 @@ class Drawing:
             InputError: it holds no outline, with what was left out.
         """
         if not self.outlines:
-            told = "; ".join(f"{count} x {what}" for what, count in self.left_out.items())
+            skipped = "; ".join(f"{count} x {what}" for what, count in self.left_out.items())
             raise InputError(
-                "no closed outline is in it" + (f" ({told})" if told else ""),
+                "no closed outline is in it" + (f" ({skipped})" if skipped else ""),
                 _ASK_FOR_POLYLINES,
                 source=source,
             )

@@ -31,7 +31,7 @@ from harness.model.wall import Wall
 
 FRICTION = 0.6
 UNIT_WEIGHT = 20.0
-"""Taken where nothing is said: round values of dry stone [-, kN/m3], and told as taken wherever the answer is shown."""
+"""Taken where nothing is said: round values of dry stone [-, kN/m3], and shown as assumed with the answer."""
 
 
 _FINE = 0.02
@@ -225,9 +225,9 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
     asked = Asked(accuracy, mapping.units or "", mapping.scale or 1.0, mapping.plane, mapping.at)
     try:
         reader = found.read
-        with _heard() as told:
+        with _heard() as warned:
             drawing = reader(path, asked)
-        drawing.notes += told
+        drawing.notes += warned
         return drawing
     except ImportError as error:
         raise InputError(
@@ -249,16 +249,16 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
 @contextmanager
 def _heard() -> Iterator[list[str]]:
     """What a reader warns of, instead of what it prints."""
-    told: list[str] = []
+    warned: list[str] = []
     nowhere = io.StringIO()
     with (
         contextlib.redirect_stdout(nowhere),
         contextlib.redirect_stderr(nowhere),
         warnings.catch_warnings(record=True, action="always") as caught,
     ):
-        yield told
+        yield warned
     words = [str(item.message) for item in caught if not issubclass(item.category, RuntimeWarning | DeprecationWarning)]
-    told += [f"its reader warns: {text[:_MOST_REASON]}" for text in words]
+    warned += [f"its reader warns: {text[:_MOST_REASON]}" for text in words]
 
 
 def _in_words(live: tuple[float, float]) -> str:
@@ -341,8 +341,8 @@ def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None,
         step = 10.0**exponent
         on_grid = abs(points - np.round(points / step) * step) <= 1e-9 * step + 1e-15 * abs(points).max()
         if on_grid.mean() >= MOST:
-            told = f"joints: faces up to {1.5 * step:g} apart, because the coordinates are rounded to {step:g}"
-            return 1.5 * step, [told]
+            warned = f"joints: faces up to {1.5 * step:g} apart, because the coordinates are rounded to {step:g}"
+            return 1.5 * step, [warned]
     return None, []
 
 

@@ -44,8 +44,8 @@ def read_svg(path: Path, asked: Asked) -> Drawing:
 def _unit(root: ElementTree.Element) -> str:
     """The unit that a picture is drawn in, empty if it does not tell: a page of "210mm" with a viewBox 210 wide."""
     width, box = _WIDTH.fullmatch(root.get("width", "")), root.get("viewBox", "").replace(",", " ").split()
-    told = width is not None and len(box) == 4 and math.isclose(float(width[1]), float(box[2]), rel_tol=1e-6)
-    return width[2] if width is not None and told else ""
+    scaled = width is not None and len(box) == 4 and math.isclose(float(width[1]), float(box[2]), rel_tol=1e-6)
+    return width[2] if width is not None and scaled else ""
 
 
 def _walk(

@@ -228,7 +228,7 @@ def _numbers(text: str) -> list[float]:
 
 
 def _box(root: Element) -> tuple[float, float] | None:
-    """The size of the window in user units, where it is told."""
+    """The size of the window in user units, where it is stated."""
     box = _numbers(root.get("viewBox", ""))
     if len(box) == 4:
         return box[2], box[3]

@@ -152,7 +152,7 @@ def tensions(bars: Bars, forces: FloatArray) -> FloatArray:
 
 
 def with_bar_forces(answer: Answer, bars: Bars, m: int) -> Answer:
-    """The answer for a wall with bars as joints, its forces (m + k, 3) told apart: of m joints and of k bars.
+    """The answer for a wall with bars as joints, its forces (m + k, 3) separated: of m joints and of k bars.
 
     Columns of its path that have the name of a bar are tensions beyond the prestress, and become whole ones.
     """

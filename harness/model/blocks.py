@@ -67,7 +67,7 @@ def polygons_of(blocks: Sequence[Block]) -> list[FloatArray]:
     """The outlines (k, 2) of blocks, counter-clockwise [length]; one with holes goes along a cut to each and back.
 
     Raises:
-        InputError: some are no polygons; all of them are told.
+        InputError: some are no polygons; all of them are reported.
     """
     polygons = [np.array(block.polygon, dtype=float) for block in blocks]
     holes = {k: [np.array(hole, dtype=float) for hole in block.holes] for k, block in enumerate(blocks) if block.holes}

@@ -13,11 +13,11 @@ Item = TypeVar("Item")
 Made = TypeVar("Made")
 
 _MOST_FAULTS = 100
-"""Lines about one file that are told; the rest are counted."""
+"""Lines about one file that are printed; the rest are counted."""
 _LIKE_MEANING = {"polygon": ("vertices", "corners", "points", "coordinates", "coords", "outline", "shape")}
 """Words of other formats for fields of a wall."""
 _MOST_ALIKE = 3
-"""Elements with the same fault that are told one by one."""
+"""Elements with the same fault that are named one by one."""
 MOST_NAMED = 20
 """Names that a sentence lists."""
 MOST_WORDED = 500
@@ -91,7 +91,7 @@ class MissingPackage(InputError):
 
 
 class InputFaults(InputError):
-    """Several faults of one input, told together in the order of the file, so that one round mends them all.
+    """Several faults of one input, reported together in the order of the file, so that one round mends them all.
 
     Args:
         faults: at least one; those without a source take that of the whole.
@@ -163,7 +163,7 @@ def raise_faults(faults: Sequence[InputError], source: str = "", more: int = 0) 
 
 
 def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:
-    """What is made of every item; the faults of all items are told together.
+    """What is made of every item; the faults of all items are reported together.
 
     Raises:
         InputError: the one fault, or `InputFaults` of all.

@@ -44,7 +44,7 @@ class Strict(BaseModel):
 
 
 TAGS = ONE, MANY, OBJECT, OTHER = "(one)", "(many)", "(object)", "(other)"
-"""Alternatives of a field, told apart by what is given, so that only the faults of the one meant are found.
+"""Alternatives of a field, distinguished by what is given, so that only the faults of the one meant are found.
 
 Parentheses keep them apart from names of fields.
 """

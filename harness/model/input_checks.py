@@ -96,8 +96,8 @@ def _rule_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
         )
         if not met and number not in unknown:
             idle.append(f"friction.rules[{number}]")
-    told = [f"{first_few(idle, 5)}: no interface is of this kind, so the rule does nothing"] if idle else []
-    return [*unknown_in_rules(wall, blocks), *told]
+    doubts = [f"{first_few(idle, 5)}: no interface is of this kind, so the rule does nothing"] if idle else []
+    return [*unknown_in_rules(wall, blocks), *doubts]
 
 
 def unknown_in_rules(wall: Wall, blocks: Sequence[Block]) -> list[str]:

@@ -89,21 +89,21 @@ class Inspection:
                 joins none.
         """
         near = [(number, mark.size) for number, mark in enumerate(self.marks, start=1) if mark.near_miss and mark.size]
-        told = [
+        lines = [
             f"{number}. {mark.kind}: {mark}" for number, mark in enumerate(self.marks, start=1) if not mark.near_miss
         ]
         if not near:
-            return told
+            return lines
         gaps = np.array([size for _, size in near])
         joined = 0 if advice is None else int((gaps <= advice).sum())
         remedy = allowing(gaps.max())
         if advice is not None and joined:
             remedy = f"{saying(advice)}, which joins {'all' if joined == len(gaps) else joined} of them"
-        told.append(
+        lines.append(
             f"{near[0][0]} to {near[-1][0]}. doubt: {len(near)} pair(s) of faces {NEAR_MISS} {span(gaps)} apart, or "
             f"overlap by as much, and have no joint; if they are in contact, write {remedy}"
         )
-        return told
+        return lines
 
 
 def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -> Inspection:
@@ -116,7 +116,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
         InputError: it has no blocks, or too many.
     """
     blocks = written_out(wall)
-    apart = _told_apart(blocks)
+    apart = _with_own_names(blocks)
     fixed = np.array([block.fixed for block in blocks], dtype=bool)
     bad, polygons = _outlines(blocks)
     faults = [*faults_of_wall(wall, blocks), *bad, *sorted_out(lambda block: weight_of(block, wall), blocks)[0]]
@@ -171,7 +171,7 @@ def _outline(block: Block) -> FloatArray:
         raise
 
 
-def _told_apart(blocks: Sequence[Block]) -> list[Block]:
+def _with_own_names(blocks: Sequence[Block]) -> list[Block]:
     """The blocks, a second one of a name with its number behind it."""
     seen: Counter[str] = Counter()
     apart = []

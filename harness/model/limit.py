@@ -2,7 +2,8 @@
 
 Coordinates, friction and loads are written to some digits. What they leave open moves the multiplier of a mechanism, by
 virtual work, by that share of the power which the dead load would have on it if nothing cancelled. A multiplier no
-larger than this cannot be told from zero: whether such a wall just stands or just falls is not in its description.
+larger than this cannot be distinguished from zero: whether such a wall just stands or just falls is not in its
+description.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ def gross_power(assembly: Assembly, mechanism: FloatArray) -> float:
     return float((dead * speed)[assembly.free].sum())
 
 
-def least_told(assembly: Assembly, mechanism: FloatArray) -> float:
+def smallest_resolved(assembly: Assembly, mechanism: FloatArray) -> float:
     """The multiplier of a mechanism (n, 3) up to which the numbers of the wall allow zero; zero without live work."""
     work = float((assembly.live * mechanism).sum())
     return accuracy(assembly) * gross_power(assembly, mechanism) / work if work > 0.0 else 0.0

@@ -152,7 +152,7 @@ class Solver(ABC):
     def prepare(self) -> None:  # noqa: B027 - a method without it needs nothing
         """Load what its runs need (libraries, compiled kernels); called once in a process before a run's clock starts.
 
-        May raise; that is told as a method that cannot be loaded.
+        May raise; that is reported as a method that cannot be loaded.
         """
 
     @abstractmethod

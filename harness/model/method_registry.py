@@ -134,7 +134,7 @@ def prepared(method: Method) -> Method:
 
 @contextmanager
 def _loading(name: str) -> Iterator[None]:
-    """Whatever goes wrong inside is told as a method that cannot be loaded."""
+    """Whatever goes wrong inside is reported as a method that cannot be loaded."""
     try:
         yield
     except (Exception, SystemExit) as error:

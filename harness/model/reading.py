@@ -48,7 +48,7 @@ def validate(
         model: the model.
         data: what a file held.
         source: what errors call the file.
-        more: further faults that show in the data, told beside those of the model.
+        more: further faults that show in the data, reported beside those of the model.
 
     Raises:
         InputError: the fault of the data with its place, or `InputFaults` of all of them in the order of the file.
@@ -88,10 +88,10 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
     message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "it should")
     remedy = ""
     if fault["type"] in PLAIN:
-        told = dict(fault.get("ctx", {}))
-        if told.get("actual_length", 0) is None:  # pydantic does not count the entries of an object
-            told["actual_length"] = len(fault["input"])
-        message = PLAIN[fault["type"]].format(**told)
+        context = dict(fault.get("ctx", {}))
+        if context.get("actual_length", 0) is None:  # pydantic does not count the entries of an object
+            context["actual_length"] = len(fault["input"])
+        message = PLAIN[fault["type"]].format(**context)
     if fault["type"] == "extra_forbidden":
         return _unknown_field(model, fault["loc"], place, source)
     if "input" in fault and not isinstance(fault["input"], dict | list):

@@ -53,7 +53,7 @@ def _shortest_cut(stone: shapely.Polygon, line: FloatArray, holes: Sequence[Floa
     for _, number, at, begin in pairs:
         if stone.covers(shapely.LineString([line[at], holes[number][begin]])):
             return number, at, begin
-    return pairs[0][1:]  # a stone that is no polygon, which is told elsewhere
+    return pairs[0][1:]  # a stone that is no polygon, which is reported elsewhere
 
 
 def rings_of(line: FloatArray) -> list[FloatArray]:

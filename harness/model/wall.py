@@ -328,8 +328,8 @@ class Wall(Strict):
         """The units in words, for the head of whatever shows the wall."""
         units = self.units
         length, force = ("none" if unit == DIMENSIONLESS else unit for unit in (units.length, units.force))
-        told = f"length {length}, force {force}" + (f", unit weight {units.unit_weight}" if units.unit_weight else "")
-        return told if self.units_declared else f"{told} (assumed: the file declares none)"
+        stated = f"length {length}, force {force}" + (f", unit weight {units.unit_weight}" if units.unit_weight else "")
+        return stated if self.units_declared else f"{stated} (assumed: the file declares none)"
 
     def document(self) -> dict[str, Any]:
         """The wall as JSON values of format wall/1: fields at their defaults left out, but units that are declared."""

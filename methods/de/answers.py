@@ -125,7 +125,7 @@ def _first_bracket(
     tried: list[tuple[tuple[bool, float, bool, int], MassScaling, OrderBracket]] = []
     for k, tuning in enumerate(candidates):
         found = known.searched(search(tuning), assembly.has_live_load)
-        if found.held is not None and found.told(assembly.has_live_load):
+        if found.held is not None and found.shows(assembly.has_live_load):
             return tuning, found
         width = 1.0 if found.width is None else found.width
         tried.append(((found.held is None, width, found.moving is None, k), tuning, found))

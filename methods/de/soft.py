@@ -173,7 +173,7 @@ class DeformableJoints(Solver):
         answer.forces_multiplier = holds.path["multiplier"][-1] if holds.path["multiplier"] else None
         if answer.finding in (Finding.COLLAPSES, Finding.FALLS):
             answer.mechanism = None if holds.motion is None else _velocities_of(holds.motion)
-        answer.details |= _told(holds, stiffness)
+        answer.details |= _details(holds, stiffness)
         return answer
 
     def _loaded(self, holds: Holds, joints: str, unit: float) -> Answer:
@@ -282,7 +282,7 @@ def _described(wall: SoftWall, stiffness: float, ratio: float) -> str:
     return f"joints of stiffness {stiffness:.4g} across and {ratio:g} times that along, corners rounded by {radius}"
 
 
-def _told(holds: Holds, stiffness: float) -> dict[str, Any]:
+def _details(holds: Holds, stiffness: float) -> dict[str, Any]:
     """What the details tell of the last rest."""
     wall = holds.wall
     wall.restore(holds.rest)

@@ -42,7 +42,7 @@ class SearchSettings(Settings):
         effort: "quick" few paths and descents; "normal" continuation in friction too, less of it on large walls; "deep"
             much of everything, whatever the size.
         starts: central paths with other weights of the blocks; None as `effort` says.
-        ladder: factors on friction for the continuation, in order; None as `effort` says, empty for none.
+        continuation: factors on friction of the friction continuation, in order; None as `effort` says, empty for none.
         failures: draws without success that end a ray descent; None as `effort` says.
         rational_interfaces: interfaces up to which the result is confirmed in fractions.
         bound_seconds: of CPU time for a lower bound as of `la-bound`, where no tree proves the state to be the least;
@@ -52,7 +52,7 @@ class SearchSettings(Settings):
     seed: int = Field(default=0, ge=0)
     effort: Literal["quick", "normal", "deep"] = "normal"
     starts: int | None = Field(default=None, ge=0)
-    ladder: tuple[PositiveFactor, ...] | None = None
+    continuation: tuple[PositiveFactor, ...] | None = None
     failures: int | None = Field(default=None, ge=1)
     rational_interfaces: int = Field(default=100, ge=0)
     bound_seconds: float | None = Field(default=None, ge=0.0)

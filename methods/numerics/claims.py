@@ -12,7 +12,7 @@ from harness.model.bars import with_bar_forces, with_bars_as_joints
 from harness.model.components import analysed_apart
 from harness.model.deadline import best_so_far
 from harness.model.errors import as_sentence
-from harness.model.limit import accuracy, gross_power, least_told, strengthened
+from harness.model.limit import accuracy, gross_power, smallest_resolved, strengthened
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
 
@@ -68,7 +68,7 @@ def _statics_of(assembly: Assembly) -> Statics | None:
         found = greatest_multiplier(wall)
         if found is not None:
             multiplier, forces, mechanism = found
-            near = abs(multiplier) <= least_told(assembly, mechanism)
+            near = abs(multiplier) <= smallest_resolved(assembly, mechanism)
             return Statics(multiplier, forces, mechanism, near) if near or wall is assembly else None
     return None
 
@@ -94,7 +94,7 @@ def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
         low = multiplier if answer.bracket is None else answer.bracket[0]
         if mechanism is None or answer.flow == "approximate":
             return low <= SMALL * assembly.load_unit
-        return low <= least_told(assembly, mechanism)
+        return low <= smallest_resolved(assembly, mechanism)
     if answer.finding is Finding.FALLS and answer.flow == "associated" and mechanism is not None:
         gain = float((assembly.dead * mechanism).sum()) - strength_power(assembly, mechanism)
         return gain <= accuracy(assembly) * gross_power(assembly, mechanism)
@@ -202,7 +202,7 @@ def _falls(answer: Answer, mechanism: FloatArray) -> Answer:
 def _below_zero(assembly: Assembly, answer: Answer) -> Answer:
     """The answer for a collapse state below zero, which the live load does not cause, of a wall that stands."""
     assert answer.multiplier is not None
-    if answer.mechanism is not None and -answer.multiplier <= least_told(assembly, answer.mechanism):
+    if answer.mechanism is not None and -answer.multiplier <= smallest_resolved(assembly, answer.mechanism):
         return replace(answer, multiplier=0.0, forces_multiplier=0.0)
     sentence = "the run ended in a collapse state below zero, which the live load does not cause"
     return no_answer(answer, sentence)

@@ -30,12 +30,12 @@ class _Fork(Generic[T]):
             os.close(self.place)
             _answer(call, theirs, seconds)
         os.close(theirs)
-        self._told: list[bytes] = []
+        self._parts: list[bytes] = []
 
     def read(self) -> bool:
         """Read what has come; False at the end of it."""
         part = os.read(self.place, 1 << 16)
-        self._told.append(part)
+        self._parts.append(part)
         return bool(part)
 
     def result(self) -> T:
@@ -48,7 +48,7 @@ class _Fork(Generic[T]):
         self.pid = 0
         if status != 0:
             raise ForkLost(f"a part of the run ended with status {status} and left no answer")
-        given, raised = pickle.loads(b"".join(self._told))
+        given, raised = pickle.loads(b"".join(self._parts))
         if raised is not None:
             raise raised
         result: T = given
@@ -71,12 +71,12 @@ def _answer(call: Callable[[], Any], place: int, seconds: float) -> NoReturn:
         if seconds < float("inf"):
             signal.setitimer(signal.ITIMER_REAL, max(seconds, 1e-6))
         try:
-            told: tuple[Any, Exception | None] = (call(), None)
+            outcome: tuple[Any, Exception | None] = (call(), None)
         except Exception as error:
-            told = (None, error)
+            outcome = (None, error)
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         with os.fdopen(place, "wb") as stream:
-            pickle.dump(told, stream)
+            pickle.dump(outcome, stream)
         code = 0
     finally:
         os._exit(code)

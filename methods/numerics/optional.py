@@ -1,4 +1,4 @@
-"""Packages that one method alone needs: they come with an extra, and their absence is told in a sentence."""
+"""Packages that one method alone needs: they come with an extra, and their absence is stated in a sentence."""
 
 from __future__ import annotations
 

@@ -104,20 +104,20 @@ class Bisection(Solver):
     def _concluded(
         self, problem: Borne, settings: BisectionSettings, borne: float | None, not_borne: float | None, ended: bool
     ) -> Answer:
-        words, told = f"{self._words.program} {self._words.bears}", {"asked": problem.said}
+        words, asked = f"{self._words.program} {self._words.bears}", {"asked": problem.said}
         if borne is None:
             sentence = f"{words} under no load, not even the dead load, which does not show that the wall falls"
-            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=told)
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=asked)
         if not problem.assembly.has_live_load:
             sentence = f"{words} under the dead load; no live load is given"
-            answer = Answer(Status.OK, Finding.STANDS, sentence, details=told)
+            answer = Answer(Status.OK, Finding.STANDS, sentence, details=asked)
         elif not_borne is None:
             sentence = f"{words} up to multiplier {borne:.6g}; larger loads were not tried"
-            answer = Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=told)
+            answer = Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, details=asked)
         else:
             sentence = f"{words} at {borne:.6g} and not at {not_borne:.6g}; {self._words.no_proof}"
             loose = not_borne - borne > settings.accuracy * not_borne
-            answer = Answer(Status.NOT_CONVERGED if loose else Status.OK, Finding.COLLAPSES, sentence, details=told)
+            answer = Answer(Status.NOT_CONVERGED if loose else Status.OK, Finding.COLLAPSES, sentence, details=asked)
             answer.multiplier, answer.bracket = 0.5 * (borne + not_borne), (borne, not_borne)
             answer.bracket_meaning = "[highest multiplier that was borne, lowest that was not]"
             if problem.motion is not None:

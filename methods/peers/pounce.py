@@ -100,9 +100,9 @@ class Pounce(ProgrammePeer):
                 ("max_wall_time", left),
             ):
                 problem.add_option(option, value)
-            point, told = problem.solve(point)
+            point, info = problem.solve(point)
             point = np.asarray(point, dtype=float)
-            iterations, said = iterations + int(told.get("iter_count", 0)), str(told.get("status_msg", ""))
+            iterations, said = iterations + int(info.get("iter_count", 0)), str(info.get("status_msg", ""))
             if not np.isfinite(point).all():
                 return Ended(said, iterations=iterations)
         slacks = np.maximum(programme.yield_rows @ point[functions.forces], 0.0)

@@ -1,4 +1,4 @@
-"""Line charts as inline SVG, drawn once here: axes with round ticks, series told apart by dash and marker as well."""
+"""Line charts as inline SVG, drawn once here: axes with round ticks, series with dashes and markers of their own."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ROUNDING = 1e-9
 """Relative difference of values that are one: an axis of such values is as wide as one of a single value."""
 _MOST_POINTS = 300
 SMALLEST = 1.0
-"""Least size of a mark: smaller ones cannot be told apart on a page."""
+"""Least size of a mark: smaller ones cannot be distinguished on a page."""
 
 
 @dataclass(frozen=True)

@@ -233,11 +233,11 @@ def _history(results: list[Result]) -> tuple[str, Markup] | None:
     if not series:
         return None
     if all(len(line.x) == 1 for line in series):
-        told = [
+        searches = [
             f"that of {line.name} reached {numbers.multiplier(line.y[0])} after {numbers.seconds(line.x[0])}"
             for line in series
         ]
-        return f"Searches: {', '.join(told)} of CPU time, and found nothing lower.", Markup("")
+        return f"Searches: {', '.join(searches)} of CPU time, and found nothing lower.", Markup("")
     levels = [
         (f"associated maximum {numbers.multiplier(result.multiplier)}", result.multiplier)
         for result in results

@@ -11,7 +11,7 @@ import pandas as pd
 from reports.labels import numbers
 
 _MOST_GROUPS = 6
-"""Groups told in sentences; more are read from charts and tables."""
+"""Groups described in sentences; more are read from charts and tables."""
 
 
 def findings(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> list[str]:
@@ -29,7 +29,7 @@ def findings(tables: Mapping[str, pd.DataFrame], grid: Sequence[str]) -> list[st
 
 
 def answer(tables: Mapping[str, pd.DataFrame]) -> str:
-    """On how many walls the families agree, differ, or cannot be told apart; empty where it is known of none."""
+    """On how many walls the families agree, differ, or cannot be separated; empty where it is known of none."""
     table = tables.get("agreement")
     if table is None or not len(table):
         return ""
@@ -44,13 +44,13 @@ def answer(tables: Mapping[str, pd.DataFrame]) -> str:
 
 def _levels(spread: pd.DataFrame, grid: Sequence[str]) -> Iterator[str]:
     """How a multiplier goes along the one quantity that varies, or how it scatters."""
-    told = spread[spread["answered"] > 0]
-    varied = [name for name in grid if told[name].nunique() > 1]
-    groups = list(told.groupby(["case", "method"], sort=False))
+    solved = spread[spread["answered"] > 0]
+    varied = [name for name in grid if solved[name].nunique() > 1]
+    groups = list(solved.groupby(["case", "method"], sort=False))
     if len(groups) > _MOST_GROUPS:
         return
     for (case, method), group in groups:
-        about = f"{method} on {case}" if told["case"].nunique() > 1 else str(method)
+        about = f"{method} on {case}" if solved["case"].nunique() > 1 else str(method)
         least, most = group.sort_values("mean_low").iloc[0], group.sort_values("mean_high").iloc[-1]
         brackets, answered = int(group["brackets"].sum()), int(group["answered"].sum())
         low, high = float(least["mean_low"]), float(most["mean_high"])

@@ -39,7 +39,7 @@ class Sheet:
             cannot be read even when a drawing fills a screen.
         wide: width of a letter in its size, of the fonts of figures on the average.
         tallest: height of the drawing in its width at most, so that a tower stays on a page.
-        listed: marks told in words below the drawing; `drystone validate` lists all.
+        listed: marks explained below the drawing; `drystone validate` lists all.
         line: letters of a line of such words.
     """
 
@@ -76,9 +76,9 @@ def inspected_figure(
         extent = shapes.extent_of(looked.outlines)
         margin = sheet.margin * extent.longest
         width, height = extent.width + 2 * margin, extent.height + 2 * margin
-        told = _legend(looked.marks, sheet)
+        legend = _legend(looked.marks, sheet)
         tall = PAGE * min(height / width, sheet.tallest)
-        foot = (0.35 if axes else 0.0) + 1.35 * sheet.text / 72 * len(told)
+        foot = (0.35 if axes else 0.0) + 1.35 * sheet.text / 72 * len(legend)
         page = Figure(figsize=(PAGE, tall + foot))
         ax = page.add_axes((0.08, foot / (tall + foot), 0.9, tall / (tall + foot)))
         ax.set_xlim(extent.left - margin, extent.right + margin)
@@ -95,7 +95,7 @@ def inspected_figure(
         else:
             ax.axis("off")
         _marks(ax, looked.marks, sheet)
-        words = "\n".join(told)
+        words = "\n".join(legend)
         page.text(
             0.02, 0.1 * sheet.text / 72 / (tall + foot), words, fontsize=sheet.text, color=COLOURS["ink"], va="bottom"
         )

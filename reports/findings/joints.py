@@ -1,4 +1,4 @@
-"""What joints do in a collapse state, told by motion and by force: stick, slide, rock, both, part, dilate."""
+"""What joints do in a collapse state, by motion and by force: stick, slide, rock, both, part, dilate."""
 
 from __future__ import annotations
 
@@ -104,8 +104,10 @@ def joints_in_words(found: JointMotion) -> str:
         (int(found.parts.sum()), "open along their whole length"),
     ]
     moving = [(number, _OF_ONE[verb] if number == 1 else verb) for number, verb in counts if number]
-    told = [f"{numbers.count(number, 'joint') if k == 0 else number} {verb}" for k, (number, verb) in enumerate(moving)]
-    return " and ".join(filter(None, [", ".join(told[:-1]), *told[-1:]]))
+    phrases = [
+        f"{numbers.count(number, 'joint') if k == 0 else number} {verb}" for k, (number, verb) in enumerate(moving)
+    ]
+    return " and ".join(filter(None, [", ".join(phrases[:-1]), *phrases[-1:]]))
 
 
 _OF_ONE = {

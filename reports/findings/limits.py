@@ -1,4 +1,4 @@
-"""What methods are known not to do, in prose, for the report: told of those whose traits they go with."""
+"""What methods are known not to do, in prose, for the report: stated of those whose traits they go with."""
 
 from __future__ import annotations
 

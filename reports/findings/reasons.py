@@ -107,8 +107,9 @@ def reasons(item: CaseResults) -> list[str]:
         if other is least or other.mechanism is None or other.judge.accepted is False or _same_value(least, other):
             continue
         apart.append(_reason(assembly, least, other, measure) + _self_stress(item, least, other))
-    told = [*apart, *_histories(states, several=bool(apart))]
-    return [f"At the multiplier of {least.method}: {', '.join(agree)}.", *told] if agree and told else told
+    sentences = [*apart, *_histories(states, several=bool(apart))]
+    first = [f"At the multiplier of {least.method}: {', '.join(agree)}."] if agree and sentences else []
+    return first + sentences
 
 
 def _self_stress(item: CaseResults, least: Result, other: Result) -> str:
@@ -130,20 +131,20 @@ def _self_stress(item: CaseResults, least: Result, other: Result) -> str:
 
 def _histories(states: list[Result], *, several: bool) -> list[str]:
     """Where histories of friction lead a method that follows several, if they part or there is anything to explain."""
-    told = []
+    sentences = []
     for result in states:
         ends = AnswerDetails(result.details).plateaus
         if len(ends) < 2:
             continue
         low, high = numbers.multiplier(min(ends)), numbers.multiplier(max(ends))
         if max(ends) - min(ends) > _SAME_VALUE * abs(max(ends)):
-            told.append(
+            sentences.append(
                 f"{result.method} ends between {low} and {high} over {len(ends)} histories of friction: "
                 "which collapse state loading reaches depends on them."
             )
         elif several:
-            told.append(f"{result.method} ends at {low} along each of {len(ends)} histories of friction.")
-    return told
+            sentences.append(f"{result.method} ends at {low} along each of {len(ends)} histories of friction.")
+    return sentences
 
 
 def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArray) -> str:

@@ -132,7 +132,7 @@ def _residual(item: CaseResults) -> str:
 
 
 def _shown(item: CaseResults) -> Result | None:
-    """The state that is drawn and whose reactions are told: the least, or any accepted one with forces."""
+    """The state that is drawn and whose reactions are shown: the least, or any accepted one with forces."""
     least = least_known(item)
     if least is not None and least.forces is not None and least.mechanism is not None:
         return least

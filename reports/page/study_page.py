@@ -294,11 +294,11 @@ def _fragility(table: pd.DataFrame, page: StudyPage) -> tuple[charts.Chart, int]
 
 def _groups(table: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[str, pd.DataFrame]]:
     """Groups with a name of what tells them apart."""
-    telling = [name for name in by if table[name].nunique(dropna=False) > 1] or ["method"]
-    for values, group in table.groupby(telling, dropna=False, sort=False):
+    varying = [name for name in by if table[name].nunique(dropna=False) > 1] or ["method"]
+    for values, group in table.groupby(varying, dropna=False, sort=False):
         parts = [
             str(value) if name in ("case", "method") else f"{name} {_cell(value)}"
-            for name, value in zip(telling, values, strict=True)
+            for name, value in zip(varying, values, strict=True)
             if not (isinstance(value, float) and value != value)
         ]
         yield ", ".join(parts) or "all", group

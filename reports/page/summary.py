@@ -70,12 +70,12 @@ def summary(run: ComparisonRun, governs: CaseResults | None = None) -> Summary:
     """
     items = [item for item in run.cases if not shapes.problem(item.case)]
     found, missed = _broken_theory(run)
-    told = governs or (items[0] if len(run.cases) == len(items) == 1 else None)
-    advice = "" if told is None else which_number(told)
-    if told is None:
+    governing = governs or (items[0] if len(run.cases) == len(items) == 1 else None)
+    advice = "" if governing is None else which_number(governing)
+    if governing is None:
         found.extend(_suite(items))
     elif not advice:
-        found.append(wall_findings(told))
+        found.append(wall_findings(governing))
     return Summary([*found, *missed], advice, _red_rows(run))
 
 
@@ -263,7 +263,7 @@ def _or_the_same(result: Result, least: Result) -> str:
 
 
 def _suite(items: list[CaseResults]) -> list[str]:
-    """On how many walls the families agree, differ, are not told apart by a bracket, or find different things."""
+    """On how many walls the families agree, differ, are not separated by a bracket, or find different things."""
     spreads = [(by, item.case.id) for item in items if (by := spread(item)) is not None]
     found = []
     if spreads:

@@ -1,4 +1,4 @@
-"""Drawings and charts of the report as vector files of their own: SVG that other programs read, told what it shows."""
+"""Drawings and charts of the report as vector files of their own: SVG that other programs read, with what it shows."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def drawings(item: CaseResults) -> dict[str, str]:
     for result in item.results:
         if _fits(result.mechanism, case.assembly.n_blocks):
             found[f"{result.method}-mechanism"] = headed(
-                case, mechanism_drawing(case, result), _told(result, "mechanism")
+                case, mechanism_drawing(case, result), _title(result, "mechanism")
             )
         if _fits(result.forces, case.assembly.n_interfaces):
             found[f"{result.method}-forces"] = headed(
-                case, force_drawing(case, result), _told(result, "contact forces")
+                case, force_drawing(case, result), _title(result, "contact forces")
             )
     overlay, caption = figure_of(item)
     if overlay is not None:
@@ -53,7 +53,7 @@ def _fits(field: Sequence[object] | None, rows: int) -> bool:
     return field is not None and len(field) == rows
 
 
-def _told(result: Result, what: str) -> str:
+def _title(result: Result, what: str) -> str:
     return f"{result.method}, {value_in_words(result)}: {what}"
 
 

@@ -49,9 +49,9 @@ def windows() -> dict[str, Any]:
 
 
 def refused(document: dict[str, Any]) -> str:
-    with pytest.raises(CertificateError) as told:
+    with pytest.raises(CertificateError) as raised:
         verify(document | {"digest": digest(document)})
-    return str(told.value)
+    return str(raised.value)
 
 
 @pytest.mark.parametrize(("name", "wall"), [("overlap-slide", "slide"), ("overlap-stack-10", "stack-10")])
@@ -303,9 +303,9 @@ def test_what_is_too_much_to_be_read_is_refused_at_once(name: str, tmp_path: Pat
     content, reason = LARGE[name]
     file = tmp_path / ("certificate.json" + PACKED)
     file.write_bytes(content)
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as raised:
         read_certificate(file)
-    assert reason in str(told.value)
+    assert reason in str(raised.value)
     with pytest.raises(CertificateError):
         documents.read(content)
     assert CliRunner().invoke(drystone, ["verify-bound", str(file)]).exit_code == 2

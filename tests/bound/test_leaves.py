@@ -174,9 +174,9 @@ def test_why_a_window_is_refused_is_said(name: str):
     change, reason = FALSE_WINDOWS[name]
     window = windows()["windows"][0]
     change(window)
-    with pytest.raises(CertificateError) as told:
+    with pytest.raises(CertificateError) as raised:
         limits_of(window)
-    assert reason in str(told.value)
+    assert reason in str(raised.value)
 
 
 def all_states() -> States:

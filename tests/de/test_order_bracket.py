@@ -68,7 +68,7 @@ def test_no_load_is_asked_between_two_that_could_not_be_told(
     assert found.held is not None
     assert found.moving is not None
     assert found.held <= rests < moves <= found.moving
-    assert found.told(True)
+    assert found.shows(True)
     assert found.moving - found.held <= LOOSE * found.moving
 
 

@@ -270,7 +270,7 @@ def test_middle_and_width_of_what_an_order_found(fields: Any, middle: float | No
 )
 def test_a_search_says_something_where_its_bracket_is_narrow_or_the_wall_falls(fields: Any, asked: bool, told: bool):
     assert LOOSE == 0.01
-    assert bracket(**fields).told(asked) is told
+    assert bracket(**fields).shows(asked) is told
 
 
 def test_the_order_that_is_reported_is_the_median_of_brackets():

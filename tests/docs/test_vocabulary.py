@@ -13,7 +13,6 @@ ROOT = Path(__file__).resolve().parents[2]
 
 BANNED = {
     r"smoother unloaded joints": "reduced friction in unloaded joints",
-    r"friction ladder": "friction continuation",
     r"\brungs?\b": "step of the friction continuation",
     r"safe forces": "shifted associated forces",
     r"\bhangs? (?:up)?on\b": "depends on",
@@ -26,7 +25,8 @@ BANNED = {
     r"\bbroken gates?\b": "violated statement",
     r"\bbody orders?\b": "sweep order",
     r"\bdamped holds?\b": "damped load steps",
-    r"\bcould not be told\b": "undecided",
+    r"\btold\b": "reported, printed, distinguished",
+    r"\bladders?\b": "friction continuation",
     r"\bjoints that give\b": "deformable joints",
     r"\blift as they slide\b": "have dilatancy",
     r"\bslow motion\b": "pseudo-transient relaxation",
@@ -36,7 +36,7 @@ BANNED = {
     r"\bgiven up at\b": "stopped at",
     r"\bway to the answer\b": "search history, load path",
     r"\bsources? of states\b": "starting-point strategy",
-    r"\bheld against\b": "compared with",
+    r"\b(?:hold|holds|held)\b(?: \w+){0,2} against\b": "compare with, check",
     r"\bnobody can know\b": "unknown",
     r"\bfor want of\b": "because ... is missing",
     r"\bwithout a word\b": "without a message",

@@ -183,7 +183,7 @@ def test_second_run_comes_from_the_store_and_fresh_runs_again(tmp_path: Path):
     runs = [dummy_run("answer"), dummy_run("raise")]
     with open_store(tmp_path / "s.sqlite") as store:
         for fresh in (False, False, True):
-            execute(runs, store, 2, fresh=fresh, told=lambda run, result, stored: told.append(stored))
+            execute(runs, store, 2, fresh=fresh, progress=lambda run, result, stored: told.append(stored))
     assert told == [False, False, True, True, False, False]
 
 
@@ -232,7 +232,7 @@ from tests.engine.test_store_and_verdict import dummy_run
 from harness.engine.pipeline import execute
 from harness.engine.store import open_store
 with open_store(Path({str(tmp_path / "s.sqlite")!r})) as store:
-    execute([dummy_run("answer"), dummy_run("hang")], store, 1, told=lambda *_: print("done", flush=True))
+    execute([dummy_run("answer"), dummy_run("hang")], store, 1, progress=lambda *_: print("done", flush=True))
 """
     child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
     assert child.stdout is not None

@@ -22,7 +22,7 @@ def out_of_time(*_: Any, **__: Any) -> Any:
 
 STEPS = {
     "later": ("sources.paths.CentralPath.states", "central path"),
-    "ladder": ("sources.friction_continuation.FrictionContinuation.states", "friction continuation"),
+    "continuation": ("sources.friction_continuation.FrictionContinuation.states", "friction continuation"),
     "springs": ("sources.search.gravity_of", "springs with low prestress"),
     "proof": ("least.prove", "moving blocks joined"),
 }

@@ -200,8 +200,8 @@ def limits(blocks: int, interfaces: int, effort: str = "normal") -> SearchLimits
 
 
 def test_larger_walls_are_searched_with_fewer_rungs_and_longer_descents() -> None:
-    whole, half = Sizes().ladder, Sizes().ladder[::2]
-    assert [limits(blocks, 3 * blocks).ladder for blocks in (30, 31, 60, 61)] == [whole, half, half, ()]
+    whole, half = Sizes().continuation, Sizes().continuation[::2]
+    assert [limits(blocks, 3 * blocks).continuation for blocks in (30, 31, 60, 61)] == [whole, half, half, ()]
     assert [limits(blocks, 3 * blocks).descents for blocks in (30, 60, 61)] == [3, 3, 1]
     assert [limits(400, joints).descents for joints in (1000, 1001)] == [1, 0]
     assert [limits(400, joints, "quick").descents for joints in (1000, 1001)] == [1, 0]

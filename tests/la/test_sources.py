@@ -46,7 +46,7 @@ def test_answer_is_not_above_what_one_source_alone_leads_to() -> None:
     wall = running_bond(6, 3, 0.2, 1.0)
     whole = LimitAnalysis().solve(wall, SearchSettings())
     for source in SOURCES:
-        search = search_of(wall, breakpoints=200, ladder=(0.75,), starts=1)
+        search = search_of(wall, breakpoints=200, continuation=(0.75,), starts=1)
         explore(search, [source])
         assert whole.multiplier is not None
         assert search.problem.to_multiplier(search.record.least) >= whole.multiplier - 1e-9

@@ -120,7 +120,7 @@ def test_a_script_without_a_main_guard_may_compare(tmp_path: Path):
 def test_a_sweep_gives_rows_in_order_tables_and_a_page_and_finds_runs_again(tmp_path: Path):
     store, told = tmp_path / "runs.sqlite", list[bool]()
     vary = {"friction": [0.3, 0.4, 0.8]}
-    done = drystone.sweep(WALL, vary, ["la-associated"], store=store, jobs=2, told=told.append)
+    done = drystone.sweep(WALL, vary, ["la-associated"], store=store, jobs=2, progress=told.append)
     table = done.to_pandas()
     # friction below 0.5 lets the lowest joint slide; above, the stack topples
     assert list(table["friction"]) == vary["friction"]
@@ -130,7 +130,7 @@ def test_a_sweep_gives_rows_in_order_tables_and_a_page_and_finds_runs_again(tmp_
     assert {path.name for path in done.save(tmp_path / "out")} >= {"runs.csv", "quantiles.csv"}
     assert "friction" in done.report(tmp_path / "out.html").read_text(encoding="utf-8")
     assert "<table" in done._repr_html_()
-    again = drystone.sweep(WALL, vary, ["la-associated"], store=store, told=told.append)
+    again = drystone.sweep(WALL, vary, ["la-associated"], store=store, progress=told.append)
     assert told[3:] == [True] * 3
     assert again.to_pandas()["multiplier"].tolist() == table["multiplier"].tolist()
 

@@ -108,10 +108,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_no_answer_may_hold_is_refused_with_what_the_method_did(name: str):
     changes, words = REFUSED[name]
-    with pytest.raises(AnswerFault) as told:
+    with pytest.raises(AnswerFault) as raised:
         checked(replace(PLAIN, **changes), WALL)
-    assert words in str(told.value)
-    assert "method" in str(told.value)
+    assert words in str(raised.value)
+    assert "method" in str(raised.value)
 
 
 def test_what_is_no_answer_is_refused():

@@ -164,9 +164,9 @@ def test_given_joints_that_are_none_are_refused_by_their_number(joint: dict[str,
     ]
     blocks = [box("a", 0.0, 0.0), box("beside", 1.0, 0.0), box("b", 3.0, 0.0), box("other", 5.0, 0.0, fixed=True)]
     assert built(blocks, interfaces=sound).assembly.n_interfaces == 3
-    with pytest.raises(InputError, match=words) as told:
+    with pytest.raises(InputError, match=words) as raised:
         built(blocks, interfaces=[*sound, joint])
-    assert "interfaces[3]" in str(told.value)
+    assert "interfaces[3]" in str(raised.value)
     with pytest.raises(InputError, match=words) as beside:  # three are found, and this is the first of those given
         built(blocks, interfaces={"given": [joint]})
     assert "interfaces[0]" in str(beside.value)

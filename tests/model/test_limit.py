@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from harness.model.assembly import Assembly
-from harness.model.limit import WRITTEN, accuracy, gross_power, least_told, strengthened
+from harness.model.limit import WRITTEN, accuracy, gross_power, smallest_resolved, strengthened
 from tests.walls import assembly, stack
 
 
@@ -42,14 +42,14 @@ def test_gross_power_is_load_times_the_fastest_speed_of_the_block(block):
 def test_a_sliding_block_tells_a_multiplier_of_its_accuracy(block):
     sliding = np.zeros((block.n_blocks, 3))
     sliding[block.free, 0] = 3.0
-    assert least_told(block, sliding) == pytest.approx(accuracy(block))
-    assert least_told(replace(block, live=10.0 * block.live), sliding) == pytest.approx(0.1 * accuracy(block))
+    assert smallest_resolved(block, sliding) == pytest.approx(accuracy(block))
+    assert smallest_resolved(replace(block, live=10.0 * block.live), sliding) == pytest.approx(0.1 * accuracy(block))
 
 
 def test_without_live_work_only_zero_is_zero(block):
     back = np.zeros((block.n_blocks, 3))
     back[block.free, 0] = -1.0
-    assert least_told(block, back) == 0.0
+    assert smallest_resolved(block, back) == 0.0
 
 
 def test_a_heavy_block_at_rest_does_not_widen_what_is_told():
@@ -59,7 +59,7 @@ def test_a_heavy_block_at_rest_does_not_widen_what_is_told():
     sliding[top, 0] = 1.0
     dead = wall.dead.copy()
     dead[[i for i in wall.free if i != top]] *= 1e9
-    assert least_told(replace(wall, dead=dead), sliding) == least_told(wall, sliding)
+    assert smallest_resolved(replace(wall, dead=dead), sliding) == smallest_resolved(wall, sliding)
 
 
 def test_a_strengthened_wall_has_longer_contacts_and_more_friction(block):

@@ -99,7 +99,7 @@ def test_springs_that_fall_where_statics_stands_say_so():
 
 
 def few(kind: str) -> list[Edge]:
-    return list(edges(kind, told=(2, 4), untold=(9, 12)))
+    return list(edges(kind, resolved=(2, 4), unresolved=(9, 12)))
 
 
 @pytest.mark.parametrize("method", ["la", "la-associated", "fe", "fe-newton", "de"])

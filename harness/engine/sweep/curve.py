@@ -1,6 +1,6 @@
 """The curve of a study, as the report of a comparison draws it: means over seeds and draws, with least and greatest.
 
-A mean is told with its standard error and to the digits that this leaves; that of one wall has none and says so.
+A mean is stated with its standard error and to the digits that this leaves; that of one wall has none and says so.
 """
 
 from __future__ import annotations
@@ -152,9 +152,9 @@ def _in_words(name: str, points: Sequence[_Point], line: _Line, asked: Curve) ->
         (line.lost, "gave no answer"),
         (brackets, "gave a wide bracket"),
     ]
-    told = " and ".join(f"{number} {'wall' if number == 1 else 'walls'} {what}" for number, what in missing if number)
+    absent = " and ".join(f"{number} {'wall' if number == 1 else 'walls'} {what}" for number, what in missing if number)
     number = line.fallen + line.lost + brackets
-    return words + (f"; {told} and {'is' if number == 1 else 'are'} in no mean drawn" if told else "")
+    return words + (f"; {absent} and {'is' if number == 1 else 'are'} in no mean drawn" if absent else "")
 
 
 def _mean(point: _Point, unit: str, *, signed: bool) -> str:

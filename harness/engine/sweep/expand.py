@@ -30,7 +30,7 @@ from harness.model.wall import Wall
 _MOST_DRAWN = 10_000_000
 """Values that a study draws: each takes some 100 bytes."""
 MOST_TOLD = 200
-"""Characters of an error in which a wall of a study is told by its values."""
+"""Characters of an error in which a wall of a study is named by its values."""
 
 
 def shown(count: int) -> str:

@@ -76,7 +76,7 @@ class BracketState:
                 if findings is not None:
                     self.searches.append(search)
                     found = findings.taken_by(search)
-                    if not findings.stopped and found.told(ask_multiplier):
+                    if not findings.stopped and found.shows(ask_multiplier):
                         self.finished.append(found)
             raise OutOfTime
 

@@ -14,7 +14,7 @@ from methods.de.holds.motion import HeldMotion, MotionProof, StaticLimit, Trend,
 from methods.de.settings import HoldSettings
 
 SMALL = 0.01
-"""Live load, as a part of the dead load, below which residuals are told as shares of it: .0001 and .002 in `de`."""
+"""Live load, as a part of the dead load, below which residuals are given as shares of it: .0001 and .002 in `de`."""
 
 
 class State(StrEnum):

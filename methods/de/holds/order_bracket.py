@@ -105,7 +105,7 @@ class OrderBracket:
             return None
         return (self.moving - self.held) / self.moving
 
-    def told(self, ask_multiplier: bool) -> bool:
+    def shows(self, ask_multiplier: bool) -> bool:
         """Whether the search came to an end that says something."""
         if self.held is None:
             return self.moving is not None
@@ -203,7 +203,7 @@ class BracketSearch:
         for _ in range(self._options.rounds):
             held = self.found.held
             self._bisect()
-            if self._spent() or self.found.told(True) or self.found.held == held:
+            if self._spent() or self.found.shows(True) or self.found.held == held:
                 return
 
     def _bisect(self) -> None:
@@ -215,13 +215,13 @@ class BracketSearch:
         if not top:
             return
         high = min(top)
-        told = found.moving == high
+        moves = found.moving == high
         while not self._spent():
             cheap = self.engine.steps * self.engine.interfaces < self._options.cheap
             accuracy = self.settings.accuracy if cheap else max(self.settings.accuracy, self._options.creeping)
             left = min(found.moving_residual, high / self.unit)
             vanishing = left <= self._options.halved * least_motion(self.settings)
-            found.nothing = found.held == 0.0 and told and vanishing
+            found.nothing = found.held == 0.0 and moves and vanishing
             if found.nothing:
                 return
             if high - found.held <= accuracy * high:
@@ -229,7 +229,7 @@ class BracketSearch:
             middle = (found.held + high) / 2.0
             state = self._try(middle).state
             if state is not State.HELD:
-                high, told = middle, state is State.MOVING
+                high, moves = middle, state is State.MOVING
         if found.moving is None or found.moving - found.held > self._options.wide * found.moving:
             self._raise_upper_end(high)
 

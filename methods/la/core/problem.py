@@ -134,7 +134,7 @@ class Problem:
         return self.rates_of_strains(self.strains(velocities), associated)
 
     def rates_of_strains(self, strain: FloatArray, associated: bool) -> FloatArray:
-        """(m, 4) smallest rates g with q = E g of strains q (m, 3), as `rates_of_velocities` tells them."""
+        """(m, 4) smallest rates g with q = E g of strains q (m, 3), as `rates_of_velocities` gives them."""
         return self.flow_law(associated).rates(strain)
 
     def imbalance(self, forces: FloatArray, multiplier: float) -> FloatArray:

@@ -36,8 +36,8 @@ class EndOfPath:
         exact: residual of a state, and slack or rate of a contact that has both, up to which one is taken.
         biases: ratios g / y above which a slack counts as zero and below which a rate does, tried in turn. At one both
             are at the size of the gap; a greater one leaves the forces more freedom where a mechanism is slow.
-        held: such ratios of forces beside the motion of the path, tried in turn where contacts are not told apart: both
-            fall with the root of the gap there, and the slacks of all of them are held at zero.
+        held: such ratios of forces beside the motion of the path, tried in turn where contacts cannot be
+            distinguished: both fall with the root of the gap there, and the slacks of all of them are held at zero.
     """
 
     above: int = 160

@@ -114,7 +114,7 @@ def solve_paper_programme(
     unknowns, iterations, message = programme.start(start_forces), 0, ""
     counted: list[int] = []
 
-    def goes_on(_mode: int, iteration: int, *_told: float) -> bool:
+    def goes_on(_mode: int, iteration: int, *_rest: float) -> bool:
         """Note the number of the iteration, and go on while there is time."""
         counted.append(iteration)
         return not problem.deadline.passed

@@ -21,7 +21,7 @@ class SearchLimits:
         starts: central paths of the wall with blocks of other weights.
         failures, draws: draws without a lower value that end a descent, and draws of one at most.
         descents: lowest states of each source, and of each step of the friction continuation, that are descended from.
-        ladder: factors on friction of the steps of the friction continuation.
+        continuation: factors on friction of the steps of the friction continuation.
         nodes: of the tree that may prove the least state.
         certificates: programmes that may bound an unfinished tree as a whole, to rounding.
         leaves: of such a tree that are bounded where the whole takes more.
@@ -35,7 +35,7 @@ class SearchLimits:
     failures: int = 12
     draws: int = 200
     descents: int = 1
-    ladder: tuple[float, ...] = ()
+    continuation: tuple[float, ...] = ()
     nodes: int = 0
     certificates: int = 300
     leaves: int = 100
@@ -50,14 +50,15 @@ class Sizes:
     """The sizes at which the budget of normal effort changes, so that the time grows slowly, and what it is there.
 
     Attributes:
-        few_blocks, some_blocks: up to the first the whole ladder is tried, up to the next half of it, three descents a
-            source on both; above, no steps of it but those of rough joints, no other weights, and one longer descent.
+        few_blocks, some_blocks: up to the first all steps of the friction continuation, up to the next half of
+            them, three descents a source on both; above, no steps of it but those of rough joints, no other weights,
+            and one longer descent.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree finishes within its nodes.
         starts: with other weights, up to few blocks; half as many up to some.
-        ladder, fine_ladder: factors on friction: mechanisms found at each are carried to the next. The fine one first
-            goes down from above the friction of the wall.
+        continuation, fine_continuation: factors on friction: mechanisms found at each are carried on. The fine one
+            first goes down from above the friction of the wall.
     """
 
     few_blocks: int = 30
@@ -66,8 +67,8 @@ class Sizes:
     provable: int = 16
     provable_ring: int = 30
     starts: int = 24
-    ladder: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
-    fine_ladder: tuple[float, ...] = (
+    continuation: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
+    fine_continuation: tuple[float, ...] = (
         *(1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5),
         *(0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95),
     )
@@ -83,12 +84,12 @@ class Sizes:
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
             return SearchLimits(
-                100, 40, 200, 8, self.fine_ladder, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000
+                100, 40, 200, 8, self.fine_continuation, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000
             )
         if blocks <= self.few_blocks:
-            return SearchLimits(self.starts, 12, 200, 3, self.ladder, nodes)
+            return SearchLimits(self.starts, 12, 200, 3, self.continuation, nodes)
         if blocks <= self.some_blocks:
-            return SearchLimits(self.starts // 2, 12, 200, 3, self.ladder[::2], nodes)
+            return SearchLimits(self.starts // 2, 12, 200, 3, self.continuation[::2], nodes)
         if descents:
             return SearchLimits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
         return SearchLimits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
@@ -97,10 +98,11 @@ class Sizes:
 def rounds_of(settings: SearchSettings, problem: Problem, sizes: Sizes = Sizes()) -> tuple[SearchLimits, ...]:
     """The limits that the settings ask for, of one round of the search after the other.
 
-    What they leave open depends on the size of the wall. Whoever asks for draws, starts or a ladder has them descended
+    What they leave open depends on the size of the wall. Whoever asks for draws, starts or factors has them descended
     from at any size. The first round of `deep` is a normal search, so that it never ends above one.
     """
-    asked = {name: value for name in ("starts", "failures", "ladder") if (value := getattr(settings, name)) is not None}
+    names = ("starts", "failures", "continuation")
+    asked = {name: value for name in names if (value := getattr(settings, name)) is not None}
     rounds = []
     for effort in ("normal", "deep") if settings.effort == "deep" else (settings.effort,):
         limits = sizes.limits(effort, problem)

@@ -71,5 +71,5 @@ class FrictionContinuation:
     def _steps(self, search: Search) -> list[FloatArray]:
         friction = search.problem.friction
         greatest = float(friction.max(initial=0.0))
-        steps = [factor * np.minimum(friction, self.rough) for factor in search.budget.limits.ladder]
+        steps = [factor * np.minimum(friction, self.rough) for factor in search.budget.limits.continuation]
         return steps + [np.minimum(friction, most) for most in self.rough_steps if most < greatest]

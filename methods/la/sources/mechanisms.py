@@ -95,7 +95,7 @@ def _distinct(vectors: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class GivenMechanisms:
-    """Mechanisms told by how their joints move. A state counts here only if forces of this wall fit its mechanism.
+    """Mechanisms, distinguished by how their joints move. A state counts only if forces of this wall fit its mechanism.
 
     Attributes:
         motions: (m, 3) openings at both ends and slip of the joints of each, at any scale.

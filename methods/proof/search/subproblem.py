@@ -1,4 +1,4 @@
-"""Collapse states that are told apart: by contacts without slack or without a rate, and by normal forces."""
+"""Collapse states, distinguished by contacts without slack or without a rate, and by normal forces."""
 
 from __future__ import annotations
 
