@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.engine.judge_law import slacks
 from harness.engine.measures import Measures, between
 from harness.engine.residuals import moving_parts, scaled_to_live_work
 from harness.model.assembly import Assembly, BoolArray, FloatArray
@@ -54,10 +55,8 @@ def unused_strength(assembly: Assembly, forces: FloatArray, multiplier: float, j
         joints: (m,) whose strength is asked for.
     """
     scale = between(assembly, Measures.of(assembly, forces, multiplier).acting)
-    normal, shear = forces[:, :2], forces[:, 2]
-    strength = assembly.friction * normal.sum(axis=1)
-    of_tension = (normal + assembly.constant[:, :2]).min(axis=1)
-    ways = np.column_stack([strength + assembly.constant[:, 2] + shear, strength + assembly.constant[:, 3] - shear])
+    slack = slacks(assembly, forces)
+    of_tension, ways = slack[:, :2].min(axis=1), slack[:, 2:]
     of_shear = np.where(ways.max(axis=1) > 1e-6 * scale, ways.min(axis=1), np.inf)
     left = np.minimum(of_tension, of_shear) / scale
     return float(abs(left)[joints].max(initial=0.0))

@@ -6,7 +6,8 @@ import numpy as np
 
 from harness.engine.bar_checks import dissipated_by_bars, tensions_beyond
 from harness.engine.judge_decision import countable, decide, said_of
-from harness.engine.residuals import collapse_residuals, dissipated_by_strength, moving_parts, power
+from harness.engine.judge_law import beyond_lift, dissipated_by_strength
+from harness.engine.residuals import collapse_residuals, moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, AnswerDetails
 from harness.model.limit import accuracy, gross_power, smallest_resolved
@@ -77,7 +78,7 @@ def _multiplier_of(assembly: Assembly, mechanism: FloatArray) -> float:
     """
     live = power(assembly.live, mechanism)
     opening, slip = relative_velocities(assembly, mechanism)
-    taken = dissipated_by_strength(assembly, opening - (assembly.friction * abs(slip))[:, None], slip)
+    taken = dissipated_by_strength(assembly, beyond_lift(assembly, opening, slip), slip)
     taken += dissipated_by_bars(assembly, mechanism)
     return (taken - power(assembly.dead, mechanism)) / live if live > 0.0 else 0.0
 
@@ -125,10 +126,10 @@ def _fall_of(part: Assembly, motion: FloatArray, tolerance: float) -> tuple[bool
     there is none. `closing_work` is what forces so large may do on the closings, in dead loads like the gain.
     """
     opening, slip = relative_velocities(part, motion)
-    lift = (part.friction * abs(slip))[:, None]
-    closings = np.maximum(0.0, lift - opening)[np.isinf(part.crushing)]  # joints that crush close at a cost, see gain
+    opening = beyond_lift(part, opening, slip)
+    closings = np.maximum(0.0, -opening)[np.isinf(part.crushing)]  # joints that crush close at a cost, see gain
     closing = float(closings.max(initial=0.0))
-    taken = dissipated_by_strength(part, opening - lift, slip) + dissipated_by_bars(part, motion)
+    taken = dissipated_by_strength(part, opening, slip) + dissipated_by_bars(part, motion)
     gain = (power(part.dead, motion) - taken) / part.force_scale
     work = IMMENSE * float(closings.sum())
     beyond_rounding = gain * part.force_scale > GAIN * gross_power(part, motion)

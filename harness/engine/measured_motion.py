@@ -31,6 +31,7 @@ from typing import Any
 import numpy as np
 
 from harness.engine.crushing import block_forces
+from harness.engine.judge_law import beyond_lift, slacks
 from harness.engine.measures import Measures, between
 from harness.engine.residuals import moving_parts, power
 from harness.model.assembly import Assembly, FloatArray
@@ -113,12 +114,12 @@ def motion_residuals(
     for component, motion in parts:
         part, interfaces = component.assembly, component.interfaces
         opening, slip = relative_velocities(part, motion)
-        opening = opening - (part.dilatancy * abs(slip))[:, None]
+        opening = beyond_lift(part, opening, slip, "non-associated")
         closing = -opening if forces is None else -opening[np.isinf(part.crushing)]
         found = {"motion_interpenetration": max(0.0, float(closing.max(initial=0.0)))}
         if forces is not None and scale is not None:
             own = scale[interfaces, None]
-            found |= _under_force(part, forces[interfaces] / own, part.constant / own, opening, slip)
+            found |= _under_force(part, slacks(part, forces[interfaces]) / own, opening, slip)
             if part.crushes:
                 found |= _on_strips(part, forces[interfaces], own, opening)
         for name, value in found.items():
@@ -126,22 +127,17 @@ def motion_residuals(
     return residuals
 
 
-def _under_force(
-    assembly: Assembly, forces: FloatArray, strength: FloatArray, opening: FloatArray, slip: FloatArray
-) -> dict[str, float]:
+def _under_force(assembly: Assembly, slack: FloatArray, opening: FloatArray, slip: FloatArray) -> dict[str, float]:
     """What opens under force and what slips within its strength.
 
     Args:
-        assembly: the wall; forces: (m, 3) and strength: (m, 4) tension and cohesion, relative; opening: (m, 2) and
-            slip: (m,) velocities.
+        assembly: the wall; slack: (m, 4) yield slacks, relative; opening: (m, 2) and slip: (m,) velocities.
     """
-    # Friction opposes slip: slip > 0 goes with s = -mu (n1 + n2) - c A.
-    slack = assembly.friction * forces[:, :2].sum(axis=1) + np.sign(slip) * forces[:, 2]
-    slack = slack + np.where(slip > 0.0, strength[:, 2], strength[:, 3])
-    pressed = np.where(np.isinf(assembly.crushing)[:, None], abs(forces[:, :2] + strength[:, :2]), 0.0)
+    opposing = np.where(slip > 0.0, slack[:, 2], slack[:, 3])  # slip > 0 goes with s = -mu (n1 + n2) - c A
+    pressed = np.where(np.isinf(assembly.crushing)[:, None], abs(slack[:, :2]), 0.0)
     return {
         "motion_opening": float(np.minimum(pressed, np.maximum(opening, 0.0)).max(initial=0.0)),
-        "motion_sliding": float(np.minimum(abs(slack), abs(slip)).max(initial=0.0)),
+        "motion_sliding": float(np.minimum(abs(opposing), abs(slip)).max(initial=0.0)),
     }
 
 

@@ -113,7 +113,7 @@ def _sources_version(*packages: str, others: Sequence[str] = ()) -> str:
 JUDGE = tuple(
     f"harness.engine.{name}"
     for name in (
-        *("judge", "judge_breaking", "judge_dead_load", "judge_decision"),
+        *("judge", "judge_breaking", "judge_dead_load", "judge_decision", "judge_law"),
         *("bar_checks", "brittle_checks", "crushing", "measured_motion", "measures", "residuals"),
     )
 )

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.engine.bar_checks import dissipated_by_bars
-from harness.engine.residuals import block_sums, dissipated_by_strength, force_residuals, power
+from harness.engine.judge_law import beyond_lift, dissipated_by_friction, dissipated_by_strength
+from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.result import Judgement, fastest_vertex, relative_velocities
 
@@ -42,7 +43,7 @@ def judge_reaction(
     sense = -1.0 if greatest else 1.0
     work = work_scale(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
-    beyond = opening - (assembly.friction * abs(slip))[:, None]
+    beyond = beyond_lift(assembly, opening, slip)
     shown = reaction_of(assembly, forces, tensions)
     taken = dissipated_by_strength(assembly, beyond, slip) + dissipated_by_bars(assembly, mechanism)
     on_supports = np.where(assembly.fixed[:, None], bars.generalised(bars.prestress, assembly.centroid), 0.0)
@@ -83,9 +84,9 @@ def judge_plateau(
     sense = 1.0 if gives_way else -1.0
     work = work_scale(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
-    opening = opening - (assembly.dilatancy * abs(slip))[:, None]  # beyond the lift of the slip
-    friction = float(((assembly.friction - assembly.dilatancy) * forces[:, :2].sum(axis=1) * abs(slip)).sum())
-    taken = friction + dissipated_by_strength(assembly, opening, slip)
+    opening = beyond_lift(assembly, opening, slip, "non-associated")
+    taken = dissipated_by_friction(assembly, forces, slip, "non-associated")
+    taken += dissipated_by_strength(assembly, opening, slip)
     low, high = extremes
     residuals = force_residuals(assembly, forces, 0.0) | _of_motion(assembly, mechanism, sense, opening)
     residuals |= {

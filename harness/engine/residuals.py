@@ -36,6 +36,13 @@ import numpy as np
 
 from harness.engine.bar_checks import bars_at_work, dissipated_by_bars, outside_range
 from harness.engine.crushing import block_excess, block_power
+from harness.engine.judge_law import (
+    beyond_lift,
+    borne_by_friction,
+    dissipated_by_friction,
+    dissipated_by_strength,
+    slacks,
+)
 from harness.engine.measures import Measures, between, exact_sum, magnitudes
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.components import Component, components_of
@@ -100,10 +107,7 @@ def force_residuals(
         balance[block] = exact_sum(assembly, forces, multiplier, block, beyond)
     balance[:, 2] /= assembly.radius
     unbalanced = measures.relative(abs(balance).max(axis=1), measures.acting, measures.own)
-    normal, shear = forces[:, :2], forces[:, 2]
-    tension, cohesion = _own_strength(assembly)
-    excess = np.maximum(-shear - cohesion[:, 0], shear - cohesion[:, 1]) - assembly.friction * normal.sum(axis=1)
-    broken = np.maximum(0.0, np.maximum((-normal - tension).max(axis=1), excess))
+    broken = np.maximum(0.0, -slacks(assembly, forces).min(axis=1))
     if assembly.crushes:
         broken = np.maximum(broken, block_excess(assembly, forces))
     violation = measures.relative(broken, between(assembly, measures.acting), between(assembly, measures.own))
@@ -117,29 +121,6 @@ def force_residuals(
         acting, own = (between(assembly, part, bars) for part in (measures.acting, measures.own))
         found["bars"] = float(measures.relative(outside, acting, own).max(initial=0.0))
     return found
-
-
-def _own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
-    """(m, 2) tension T/2 that each end bears, and (m, 2) cohesion c A against negative and against positive shear."""
-    return assembly.constant[:, :2], assembly.constant[:, 2:]
-
-
-def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatArray) -> float:
-    """Power that tensile strength, cohesion and compressive strength take [force x velocity].
-
-    Args:
-        assembly: the wall.
-        opening: (m, 2) openings of the ends beyond what the flow lifts; closings count as none but in joints that
-            crush.
-        slip: (m,) slips.
-    """
-    tension, cohesion = _own_strength(assembly)
-    ways = np.maximum(np.column_stack([slip, -slip]), 0.0)
-    if assembly.crushes:
-        tension = np.where(np.isfinite(assembly.crushing)[:, None], 0.0, tension)
-        crushed = float(block_power(assembly, opening).sum())
-        return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum()) + crushed
-    return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum())
 
 
 def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: float) -> dict[str, float]:
@@ -162,7 +143,7 @@ def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: f
     balance[:, 2] /= assembly.length_scale
     normal = (state.force * state.normal).sum(axis=1)
     shear = abs(state.force[:, 1] * state.normal[:, 0] - state.force[:, 0] * state.normal[:, 1])
-    excess = shear - assembly.friction[state.interface] * normal
+    excess = shear - borne_by_friction(assembly, normal, state.interface)
     violation = np.maximum(0.0, np.maximum(-normal, excess)) / between(assembly, loads)[state.interface]
     return {
         "equilibrium": float((abs(balance).max(axis=1) / loads)[assembly.free].max(initial=0.0)),
@@ -330,27 +311,22 @@ def _mechanism_residuals(
     """
     mechanism, live_work = scaled_to_live_work(assembly, mechanism)
     opening, slip = relative_velocities(assembly, mechanism)
-    dilatancy = assembly.friction if flow == "associated" else assembly.dilatancy
-    lift = dilatancy * abs(slip)
-    opening = opening - lift[:, None]
-    normal, shear = forces[:, :2], forces[:, 2]
-    strength = assembly.friction * normal.sum(axis=1)
+    opening = beyond_lift(assembly, opening, slip, flow)
     forward, backward = np.maximum(slip, 0.0), np.maximum(-slip, 0.0)
-    tension, cohesion = _own_strength(assembly)
-    slack_normal = normal + tension
-    slack_forward, slack_backward = strength + shear + cohesion[:, 0], strength - shear + cohesion[:, 1]
+    slack = slacks(assembly, forces)
+    slack_normal, slack_forward, slack_backward = slack[:, :2], slack[:, 2], slack[:, 3]
     stays = abs(slack_normal * opening)
     rigid = np.isinf(assembly.crushing)
     unused = np.zeros(len(opening))
     if assembly.crushes:
-        unused = np.where(rigid, 0.0, block_power(assembly, opening) + (normal * opening).sum(axis=1))
+        unused = np.where(rigid, 0.0, block_power(assembly, opening) + (forces[:, :2] * opening).sum(axis=1))
     stays, closing = stays[rigid], -opening[rigid]
     idle_work = float(stays.sum() + abs(slack_forward * forward).sum() + abs(slack_backward * backward).sum())
     idle_work += float(abs(unused).sum())
     bars_at_fault, idle_in_bars = bars_at_work(assembly, *bars, mechanism)
     idle_work += idle_in_bars
     # Virtual work: contact forces do work r.q on the mechanism; friction dissipates what lifting does not give back.
-    dissipation = float((strength * abs(slip) - normal.sum(axis=1) * lift).sum())
+    dissipation = dissipated_by_friction(assembly, forces, slip, flow)
     dissipation += dissipated_by_strength(assembly, opening, slip) + dissipated_by_bars(assembly, mechanism)
     residuals = {
         "interpenetration": max(0.0, float(closing.max(initial=0.0))),

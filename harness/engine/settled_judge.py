@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from harness.engine.judge_dead_load import GAIN, IMMENSE
 from harness.engine.judge_decision import COUNTABLE, countable, said_of
+from harness.engine.judge_law import beyond_lift
 from harness.engine.reaction_judge import held
 from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, BoolArray, FloatArray
@@ -109,14 +110,14 @@ def judge_moved_collapse(
     parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
     motion = mechanism / (fastest_vertex(wall, mechanism) or 1.0)
     opening, slip = relative_velocities(wall, motion)
-    lift = (wall.friction * abs(slip))[:, None]
+    beyond = beyond_lift(wall, opening, slip)
     live = power(wall.live, motion)
     bears = -power(wall.dead, motion) / live if live > 0.0 else np.inf
     residuals = moved.residuals | force_residuals(wall, forces, multiplier)
     residuals |= {
         "parted": parted * assembly.n_free / assembly.force_scale,
         "moving_supports": fastest_vertex(wall, np.where(wall.fixed[:, None], motion, 0.0)),
-        "closings": max(0.0, float(np.where(moved.meets, lift - opening, 0.0).max(initial=0.0))),
+        "closings": max(0.0, float(np.where(moved.meets, -beyond, 0.0).max(initial=0.0))),
         "virtual_work": abs(bears - multiplier) / max(assembly.load_unit, abs(multiplier)),
     }
     return held(residuals, tolerance, "Places, forces and mechanism were")
@@ -146,7 +147,7 @@ def judge_settled_fall(
     speed = fastest_vertex(wall, mechanism) or 1.0
     motion = mechanism / speed
     opening, slip = relative_velocities(wall, motion)
-    beyond = np.where(moved.meets, opening - (wall.friction * abs(slip))[:, None], 0.0)
+    beyond = np.where(moved.meets, beyond_lift(wall, opening, slip), 0.0)
     closings = np.maximum(0.0, -beyond)
     gain = power(wall.dead, motion)
     enough = max(GAIN * gross_power(wall, motion), IMMENSE * wall.force_scale * float(closings.sum()))
