@@ -62,8 +62,7 @@ def _write(model: Any, programme: CollapseProgramme, greatest_rate: float) -> No
     equilibrium = programme.kinematic.T.toarray() @ _diagonal(forces)
     for left, live, dead in zip(equilibrium, programme.live, programme.dead, strict=True):
         model.subject_to(row((left, slacks)) + float(live) * multiplier == -float(dead))
-    cone = np.zeros((m, 1, 4))
-    cone[:, 0, :2], cone[:, 0, 2:] = 2.0 * programme.assembly.friction[:, None], -1.0
+    cone = 2.0 * (programme.assembly.law.rows @ forces - np.eye(4))[:, 2:3]  # slacks are those of their forces
     for left in _diagonal(cone):
         model.subject_to(row((left, slacks)) == 0.0)
     for left, right in zip(programme.kinematic.toarray(), -programme.flow.toarray(), strict=True):

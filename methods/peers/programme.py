@@ -145,7 +145,7 @@ class CollapseProgramme:
     def virtual_work(self) -> tuple[float, FloatArray, FloatArray]:
         """Coefficients of lambda, of velocities (3n,) and of rates (4m,) in the row of virtual work, at least zero."""
         rates = np.zeros((self.assembly.n_interfaces, 4))
-        rates[:, 2:] = -(self.assembly.friction * self.least_normal)[:, None]
+        rates[:, 2:] = -self.assembly.law.by_friction(self.least_normal)[:, None]
         return float(self.assembly.n_free), self.dead, rates.ravel()
 
 

@@ -29,6 +29,7 @@ from methods.de.engines.mass_scaling import MassScaling, courses, masses, number
 from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import require_lengths
 from methods.numerics.compiled import compiled
+from methods.numerics.joint_loops import shear_limit, shear_within
 
 
 class Rows(NamedTuple):
@@ -228,12 +229,11 @@ def _step(
                 normal_force = impulses[q, 0] - opening * rows.across[q]
                 shear = impulses[q, 1] - slip * rows.along[q]
                 if rows.dilatancy[q] > 0.0:  # what slip is left beyond friction lifts the contact, and so adds to it
-                    beyond = abs(shear) - rows.friction[q] * normal_force - rows.cohesion[q, 0]
+                    beyond = abs(shear) - shear_limit(rows.friction[q], normal_force) - rows.cohesion[q, 0]
                     lift = rows.dilatancy[q] * rows.across[q]
-                    normal_force += lift * max(beyond, 0.0) / (rows.along[q] + rows.friction[q] * lift)
+                    normal_force += lift * max(beyond, 0.0) / (rows.along[q] + shear_limit(rows.friction[q], lift))
                 normal_force = max(normal_force, rows.least[q])
-                limit = rows.friction[q] * normal_force
-                shear = min(max(shear, -(limit + rows.cohesion[q, 0])), limit + rows.cohesion[q, 1])
+                shear = shear_within(shear, rows.friction[q], normal_force, rows.cohesion[q, 0], rows.cohesion[q, 1])
                 pressed, rubbed = normal_force - impulses[q, 0], shear - impulses[q, 1]
                 impulses[q, 0], impulses[q, 1] = normal_force, shear
             fx, fy = pressed * nx - rubbed * ny, pressed * ny + rubbed * nx

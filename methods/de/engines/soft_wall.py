@@ -25,6 +25,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.displaced import DisplacedState
 from methods.de.engines.edges import SAME, edge_of
 from methods.numerics.compiled import compiled
+from methods.numerics.joint_loops import shear_within
 
 
 @dataclass(frozen=True)
@@ -331,9 +332,8 @@ def _advance(
             vx = velocity[b, 0] - velocity[b, 2] * by - velocity[a, 0] + velocity[a, 2] * ay
             vy = velocity[b, 1] + velocity[b, 2] * bx - velocity[a, 1] - velocity[a, 2] * ax
             pressed = kn[q] * (2.0 * radius[q] - distance)
-            limit = friction[q] * pressed
             force = shear[q] - kt[q] * time_step * (vy * nx - vx * ny)
-            force = min(max(force, -limit), limit)
+            force = shear_within(force, friction[q], pressed, 0.0, 0.0)
             shear[q] = force
             fx, fy = pressed * nx - force * ny, pressed * ny + force * nx
             out[b, 0] += fx

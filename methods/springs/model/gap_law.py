@@ -21,15 +21,10 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.compiled import compiled
+from methods.numerics.joint_loops import shear_limit
 
 OPEN, STICK, SLIP_PLUS, SLIP_MINUS = 0, 1, 2, 3
 """The states of a gap point, as compiled loops take them."""
-
-
-@compiled
-def shear_limit(mu: float, normal: float) -> float:
-    """Shear mu N that friction bears at the compression N: `JointLaw.by_friction` in compiled loops."""
-    return mu * normal
 
 
 @compiled

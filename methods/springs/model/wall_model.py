@@ -120,7 +120,7 @@ class WallModel:
         if self.n_updated == self.n_points:
             return np.empty(0)
         last = slice(self.n_updated, None)
-        limit = -self.mu[last] * self.kn[last] * self.initial_opening[last]
+        limit = self.law.by_friction(-self.kn * self.initial_opening)[last]
         return self.force * (np.clip(trial[last], -limit, limit) + self.middle[last])
 
     @cached_property

@@ -12,8 +12,9 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.compiled import compiled
+from methods.numerics.joint_loops import shear_limit
 from methods.numerics.vectors import largest
-from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, shear_limit, slip_compression
+from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, slip_compression
 
 
 @compiled

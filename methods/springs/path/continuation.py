@@ -14,10 +14,11 @@ import numpy as np
 
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import COLUMNS
+from methods.numerics.joint_loops import shear_limit
 from methods.numerics.vectors import largest
 from methods.springs.model.breaking import joints_at_strength
 from methods.springs.model.factor import Change, Factor, SingularTangent
-from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces, shear_limit, slip_compression
+from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, gap_forces, slip_compression
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.breakpoints import advance, coming_breakpoints, live_rate, next_breakpoint, strain_rates
 from methods.springs.path.direction import PathDirection
