@@ -86,7 +86,7 @@ def test_orientation_of_the_path_is_the_sign_of_the_determinant(courses: int, br
     for _ in range(6):
         slack, rates = np.exp(generator.normal(0.0, 3.0, (2, problem.n_interfaces, 4)))
         point = Point(slack, 0.0, np.zeros(problem.n_velocities), rates)
-        step = NewtonStep(problem, newton, point, 0.0, close_tight(problem))
+        step = NewtonStep(problem, point, 0.0, close_tight(problem)).factorised(newton)
         dense = problem.statics @ block_diag(*step.compliance.matrices) @ problem.kinematic.toarray()
         live = problem.live[:, None]
         sign = np.linalg.slogdet(np.block([[dense, -live], [live.T, np.zeros((1, 1))]]))[0]

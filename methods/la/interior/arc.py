@@ -116,7 +116,7 @@ class ArcPath:
             self._problem.deadline.ask()
             point = self._here.point
             try:
-                step = NewtonStep(self._problem, self._newton, point, 0.0, self._tight)
+                step = NewtonStep(self._problem, point, 0.0, self._tight).factorised(self._newton)
             except (NumericalFailure, FloatingPointError):
                 break
             history.append(point.multiplier)

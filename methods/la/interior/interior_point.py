@@ -127,8 +127,8 @@ def follow_path(
         product = point.slack * np.where(tight, 0.0, point.rates)
         gap = float(product.sum()) / problem.live_work
         try:
-            step = NewtonStep(problem, newton, point, settings.dilatancy, tight)
-        except (NumericalFailure, FloatingPointError):
+            step = NewtonStep(problem, point, settings.dilatancy, tight)
+        except FloatingPointError:
             break
         statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
         history.append(point.multiplier)
@@ -136,6 +136,11 @@ def follow_path(
         if settings.above is not None and point.multiplier >= settings.above and statics <= settings.residual:
             return PathResult(point, True, iteration, gap, statics, kinematics, history)
         merit = max(gap / settings.gap, residual / settings.residual)
+        if merit > 1.0:
+            try:
+                step.factorised(newton)
+            except NumericalFailure:
+                break
         if best is None or merit < best_merit:
             if merit < 0.9 * best_merit:
                 best_at = iteration

@@ -52,28 +52,34 @@ class Direction:
 
 
 class NewtonStep:
-    """The factorised Newton system at a point.
+    """The Newton system at a point: its residuals, and once it is `factorised`, directions.
 
     Raises:
         FloatingPointError: a slack or rate is not positive.
-        SingularMatrix: the matrix is singular to rounding.
     """
 
-    def __init__(
-        self, problem: Problem, newton: NewtonMatrix, point: Point, dilatancy: float, tight: BoolArray
-    ) -> None:
+    def __init__(self, problem: Problem, point: Point, dilatancy: float, tight: BoolArray) -> None:
         self.problem, self.point, self.dilatancy, self.tight = problem, point, dilatancy, tight
         if not (np.all(point.slack[~tight] > 0.0) and np.all(point.rates[~tight] > 0.0)):
             raise FloatingPointError("the iterate left the interior")
         self.slack = np.where(tight, 1.0, point.slack)
-        self.weight = np.where(tight, RIGID, np.maximum(point.rates / self.slack, _SOFTEST))
-        self.compliance = Compliance(problem.law, self.weight, problem.law.lift(dilatancy))
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
+
+    def factorised(self, newton: NewtonMatrix) -> NewtonStep:
+        """This step with the factors of its matrix.
+
+        Raises:
+            SingularMatrix: the matrix is singular to rounding.
+        """
+        problem = self.problem
+        self.weight = np.where(self.tight, RIGID, np.maximum(self.point.rates / self.slack, _SOFTEST))
+        self.compliance = Compliance(problem.law, self.weight, problem.law.lift(self.dilatancy))
         self.factor = newton.factorise(self.compliance.matrices, 1e-15)
         self.by_live = self.factor.solve(problem.live)
         self.live_compliance = float(problem.live @ self.by_live)
+        return self
 
     def orientation(self) -> float:
         """The sign of the determinant of the system, but for a sign common to all points of a path."""

@@ -80,7 +80,7 @@ def tresca_mechanism(
         problem.deadline.ask()
         held = _with_bounds(problem, bound)
         try:
-            step = NewtonStep(held, newton, point, 1.0, tight)
+            step = NewtonStep(held, point, 1.0, tight).factorised(newton)
         except (NumericalFailure, FloatingPointError):
             break
         taken += 1
