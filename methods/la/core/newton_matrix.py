@@ -96,14 +96,13 @@ class NewtonMatrix:
     def _gather(self, problem: Problem, place_a: IntArray, place_b: IntArray) -> IntArray:
         """Find the rows (m, 3, 6) of C of each interface; their columns (m, 6) in K, -1 for those of a fixed block."""
         m = problem.n_interfaces
-        permuted = problem.kinematic.tocsc()[:, self.order].tocsr()
+        entries, column = problem.kinematic.tocoo(), np.argsort(self.order)[problem.kinematic.indices]
         self.rows = np.zeros((m, 3, 6))
         index = np.full((m, 6), -1, dtype=np.int64)
-        dense_rows = permuted.tocoo()
-        p, k = dense_rows.row // 3, dense_rows.row % 3
-        block, component = dense_rows.col // 3, dense_rows.col % 3
+        p, k = entries.row // 3, entries.row % 3
+        block, component = column // 3, column % 3
         side = np.where(block == place_a[p], 0, 3)
-        self.rows[p, k, side + component] = dense_rows.data
+        self.rows[p, k, side + component] = entries.data
         for start, place in ((0, place_a), (3, place_b)):
             for j in range(3):
                 index[:, start + j] = np.where(place >= 0, 3 * place + j, -1)
