@@ -34,17 +34,15 @@ class EndOfPath:
         above: interfaces above which it is faster than the simplex method and comes first.
         gap: complementarity y.g relative to the live work at which the path ends; the multiplier is known to that.
         exact: residual of a state, and slack or rate of a contact that has both, up to which one is taken.
-        biases: ratios g / y above which a slack counts as zero and below which a rate does, tried in turn. At one both
-            are at the size of the gap; a greater one leaves the forces more freedom where a mechanism is slow.
-        held: such ratios of forces beside the motion of the path, tried in turn where contacts cannot be
-            distinguished: both fall with the root of the gap there, and the slacks of all of them are held at zero.
+        biases: ratios g / y above which a slack counts as zero and below which a rate does, tried in turn. Where a
+            contact neither presses nor moves, both fall with the root of the gap: a small ratio, near that root, holds
+            its slack at zero and leaves it its rate. A great one leaves the forces freedom where a mechanism is slow.
     """
 
     above: int = 160
     gap: float = 1e-14
     exact: float = 1e-11
-    biases: tuple[float, ...] = (1.0, 1e3, 1e6)
-    held: tuple[float, ...] = (1e-4, 1e-5, 1e-6, 1e-7)
+    biases: tuple[float, ...] = (1e-7, 1e-4, 1.0, 1e3, 1e6)
 
 
 @dataclass(frozen=True)
@@ -143,12 +141,9 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix, end: EndOfPath) -
     for bias in end.biases:
         state = _from_path(problem, newton, result.point, bias)
         clear = None if state is None else _at_rest_elsewhere(problem, newton, state)
-        if clear is not None and _unclear(problem, clear) <= end.exact:
-            return AssociatedResult("optimal", clear, duality_gap(problem, clear), result.iterations)
-    for bias in end.held:
-        state = _from_path(problem, newton, result.point, bias)
-        if state is not None and _unclear(problem, state) <= end.exact:
-            return AssociatedResult("optimal", state, duality_gap(problem, state), result.iterations)
+        for found in (clear, state):
+            if found is not None and _unclear(problem, found) <= end.exact:
+                return AssociatedResult("optimal", found, duality_gap(problem, found), result.iterations)
     return None
 
 
