@@ -23,6 +23,10 @@ _LEAST_CONTACT = 0.01
 """Least length of a contact, in typical block sizes, where the gap may be larger: 3 mm on a brick of 300."""
 
 
+Faces = tuple[IntArray, IntArray, FloatArray, FloatArray]
+"""Blocks (m,) and (m,), and ends of the faces (m, 2) and (m, 2) [length], of interfaces."""
+
+
 @dataclass(frozen=True)
 class Joints:
     """Interfaces of a wall, the first `trusted` of them found, and what was seen while they were looked for."""
@@ -104,10 +108,8 @@ def joints_of(
     )
 
 
-def faces_of(
-    joints: Joints, index: dict[str, int], fixed: np.ndarray
-) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
-    """Blocks (m,) and (m,), and ends of the faces (m, 2) and (m, 2), of interfaces.
+def faces_of(joints: Joints, index: dict[str, int], fixed: np.ndarray) -> Faces:
+    """Blocks and faces of interfaces.
 
     Raises:
         InputError: one of those given joins a block to itself or two fixed ones, or has no length.
@@ -141,6 +143,43 @@ def faults_of_given(joints: Joints, index: dict[str, int], fixed: np.ndarray) ->
             continue
         faults.append(InputError(*wrong, f"interfaces[{number}]", spot=Spot(interface.between, interface.start)))
     return faults
+
+
+def check_single(names: Sequence[str], fixed: BoolArray, laid: Faces, most: float) -> None:
+    """Refuse two joints on one stretch of a free block: it would bear the strength of both, which is there once.
+
+    Args:
+        names, fixed: of the blocks.
+        laid: blocks and ends of the joints.
+        most: distance across and common length up to which two joints are beside each other [length].
+
+    Raises:
+        InputError: naming the two pairs of blocks, and where.
+    """
+    block_a, block_b, face1, face2 = laid
+    lines = shapely.linestrings(np.stack([face1, face2], axis=1))
+    low, high = np.minimum(face1, face2) - most, np.maximum(face1, face2) + most
+    i, j = shapely.STRtree(lines).query(shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1]))
+    one_of = [(block[i] == other[j]) & ~fixed[block[i]] for block in (block_a, block_b) for other in (block_a, block_b)]
+    kept = (i < j) & np.any(one_of, axis=0)
+    i, j = i[kept], j[kept]
+    length = np.linalg.norm(face2 - face1, axis=1)[i]
+    along = (face2[i] - face1[i]) / length[:, None]
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    places = [((end[j] - face1[i]) * along).sum(axis=1) for end in (face1, face2)]
+    heights = [abs(((end[j] - face1[i]) * normal).sum(axis=1)) for end in (face1, face2)]
+    first, last = np.maximum(np.minimum(*places), 0.0), np.minimum(np.maximum(*places), length)
+    twice = np.flatnonzero((np.maximum(*heights) <= most) & (last - first > most))
+    if len(twice):
+        k = twice[0]
+        x, y = (face1[i[k]] + 0.5 * (first[k] + last[k]) * along[k]).tolist()
+        pairs = [(names[block_a[m]], names[block_b[m]]) for m in (i[k], j[k])]
+        raise InputError(
+            f"they lie on each other for a length of {last[k] - first[k]:.3g} and would bear twice there",
+            "Let supports meet and not overlap, and list each part of a face in one interface",
+            f"the joints of {' and of '.join(f'{a}/{b}' for a, b in pairs)}",
+            spot=Spot(tuple(dict.fromkeys([*pairs[0], *pairs[1]])), (x, y)),
+        )
 
 
 def check_held(names: tuple[str, ...], fixed: np.ndarray, block_a: IntArray, block_b: IntArray, joints: Joints) -> None:

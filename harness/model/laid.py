@@ -12,8 +12,8 @@ from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.blocks import polygons_of, support_faults, weight_of
 from harness.model.errors import of_each, raise_faults
-from harness.model.interfaces import Joints, check_held, faces_of, find_joints, normals_of
-from harness.model.wall import Block, Wall
+from harness.model.interfaces import Joints, check_held, check_single, faces_of, find_joints, limits_of, normals_of
+from harness.model.wall import Block, Detection, Wall
 
 
 class NamesBlocks(Protocol):
@@ -91,6 +91,8 @@ def lay(wall: Wall, blocks: list[Block], joints: Joints | None = None) -> Laid:
     found = joints or find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
     block_a, block_b, face1, face2 = faces_of(found, index, fixed)
     check_held(names, fixed, block_a, block_b, found)
+    limits = limits_of(Detection() if isinstance(wall.interfaces, list) else wall.interfaces, size)
+    check_single(names, fixed, (block_a, block_b, face1, face2), max(limits.gap, limits.overlap))
     normal = normals_of(
         polygons, centroids, block_a, block_b, face1, face2, found.interfaces, trusted=found.trusted, size=size
     )
