@@ -25,7 +25,7 @@ from harness.model.loads import (
     has_pressures,
     with_pressures,
 )
-from harness.model.names import faults_of_wall
+from harness.model.names import faults_of_wall, names_of_bars
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.wall import Block, Inset, Interface, Wall
 
@@ -232,12 +232,10 @@ def _bars(wall: Wall, index: dict[str, int]) -> Bars:
     """Ties and then props as arrays; tension is positive."""
     given = [("tie", 1.0, tie) for tie in wall.ties] + [("prop", -1.0, prop) for prop in wall.props]
     kinds = tuple(kind for kind, _, _ in given)
-    numbers = [*range(1, len(wall.ties) + 1), *range(1, len(wall.props) + 1)]
-    names = zip(kinds, numbers, given, strict=True)
     prestress = np.array([sign * bar.prestress for _, sign, bar in given])
     further = np.array([sign * bar.yield_force for _, sign, bar in given]) - prestress
     return Bars(
-        names=tuple(bar.id or f"{kind} {number}" for kind, number, (_, _, bar) in names),
+        names=tuple(names_of_bars(wall)),
         kinds=kinds,
         block_a=np.array([index[bar.start.block] for _, _, bar in given], dtype=np.int64),
         block_b=np.array([index[bar.end.block] for _, _, bar in given], dtype=np.int64),

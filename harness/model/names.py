@@ -49,7 +49,8 @@ def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
     fixed = {block.id for block in blocks if block.fixed}
     faults = first_worded(_unknown_groups(wall, blocks), "loads name groups that no block is in", "loads")
     faults += first_worded(_loads_on_supports(wall, fixed), "loads are on fixed blocks", "loads")
-    return faults + first_worded(_bars_between_supports(wall, fixed), "bars join two fixed blocks", "wall")
+    faults += first_worded(_bars_between_supports(wall, fixed), "bars join two fixed blocks", "wall")
+    return faults + first_worded(_bars_of_one_name(wall), "bars have the name of another", "wall")
 
 
 def _loads_of(wall: Wall) -> tuple[tuple[str, Load], tuple[str, Load]]:
@@ -96,6 +97,23 @@ def _bars_between_supports(wall: Wall, fixed: set[str]) -> Iterator[InputError]:
             if fixed.issuperset(ends):
                 remedy = "Join a block that is free to move to another or to a fixed one"
                 yield InputError("both of its blocks are fixed", remedy, f"{kind}[{number}]", spot=Spot(ends))
+
+
+def names_of_bars(wall: Wall) -> list[str]:
+    """Names of the ties and then of the props: their ids, or "tie 1", "prop 1" and so on."""
+    kinds = (("tie", wall.ties), ("prop", wall.props))
+    return [bar.id or f"{kind} {number}" for kind, bars in kinds for number, bar in enumerate(bars, start=1)]
+
+
+def _bars_of_one_name(wall: Wall) -> Iterator[InputError]:
+    """Bars that have the name of one before them: tables and the columns of a path know a bar by its name."""
+    seen: set[str] = set()
+    for place, name in enumerate(names_of_bars(wall)):
+        if name in seen:
+            ties = len(wall.ties)
+            where = f"ties[{place}]" if place < ties else f"props[{place - ties}]"
+            yield InputError(f'another tie or prop is called "{name}" too', "Give every bar an id of its own", where)
+        seen.add(name)
 
 
 def _named(wall: Wall) -> Iterator[tuple[str, str]]:

@@ -423,3 +423,15 @@ def test_reaction_along_a_tie(prestress: float):
 def test_walls_with_bars_are_never_scaled_without_them():
     with pytest.raises(ValueError, match="ties or props"):
         make_problem(tied(2.0))
+
+
+@pytest.mark.parametrize("second", ["anchor", "prop 1"])
+def test_two_bars_of_one_name_are_refused(second: str):
+    """The path has one column a name, and tables know a bar by it; a prop without an id is called prop 1."""
+    ends = {"from": {"block": "left", "at": SIDE}, "to": {"block": "block", "at": BLOCK}, "yield_force": 2}
+    ties = [ends | {"id": "anchor"}, ends | {"id": second}]
+    props = [] if second == "anchor" else [ends]
+    where = "ties[1]" if second == "anchor" else "props[0]"
+    with pytest.raises(InputError) as caught:
+        build(Wall.model_validate(block(ties=ties, props=props)))
+    assert str(caught.value).startswith(f'{where}: another tie or prop is called "{second}" too. Give')
