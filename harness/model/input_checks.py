@@ -11,6 +11,8 @@ import numpy as np
 from harness.model.assembly import Assembly
 from harness.model.errors import MOST_NAMED, Hints, first_few
 from harness.model.friction_fields import Friction
+from harness.model.load_fields import Load
+from harness.model.pressure_fields import Earth, Fill, Passive, Water
 from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
 from harness.model.wall import Block, Wall
 
@@ -24,6 +26,10 @@ _SMALLEST_ANGLE = 2.0
 """Angle [degrees] below which a coefficient is likelier: .65 degrees is .011, and wet ice has .03."""
 _UNIT_WEIGHTS = (5.0, 35.0)
 """Unit weights of masonry [kN/m3]: pumice and adobe have 6 and more, basalt 30."""
+_LOAD_UNIT_WEIGHTS = (0.1, 35.0)
+"""Unit weights of water, earth and fill [kN/m3]: light fill of foam has 0.2."""
+_GREATEST_GRAVITY = 5.0
+"""Multiple of the weight beyond which an acceleration in m/s2 is likelier: g is 9.8, factors of dead load below 2."""
 SIZES = (0.05, 250.0)
 """Extent of a wall [m]: a model on a tilting table has 0.1 and more, the highest masonry stands 170 high."""
 _SMALL_BLOCK = 1e-3
@@ -47,6 +53,8 @@ def input_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[
         *_unit_weight_slips(wall, blocks),
         *_size_slips(wall, blocks, assembly),
         *_load_slips(assembly),
+        *_gravity_slips(wall),
+        *_field_slips(wall),
     ]
 
 
@@ -202,3 +210,36 @@ def _load_slips(assembly: Assembly) -> list[str]:
     if 0.0 < dead < _SMALL_LOAD * live:
         return [f"the dead load is {dead / live:.1g} of the live load: units, or a weight too small?"]
     return []
+
+
+def _gravity_slips(wall: Wall) -> list[str]:
+    multiple = math.hypot(*wall.loads.gravity_per_weight)
+    if multiple <= _GREATEST_GRAVITY:
+        return []
+    return [f"loads.gravity is {multiple:.3g} times the weight of every block: an acceleration? The weight is [0, -1]"]
+
+
+def _field_slips(wall: Wall) -> list[str]:
+    """Sentences about unit weights and friction angles of water, earth and fill."""
+    found: list[tuple[str, Water | Earth | Fill | Passive]] = []
+    for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
+        for number, pressure in enumerate(load.pressures):
+            place = f"loads.{kind}.pressures[{number}]"
+            found += [(place, field) for field in (pressure.water, pressure.earth) if field is not None]
+        for number, fill in enumerate(load.fills):
+            place = f"loads.{kind}.fills[{number}]"
+            found += [(place, field) for field in (fill, fill.passive) if field is not None]
+    name = wall.units.unit_weight_name
+    sentences = []
+    for place, field in found:
+        weight = 0.0 if isinstance(field, Passive) else field.unit_weight
+        least, most = _LOAD_UNIT_WEIGHTS
+        if weight and not wall.units.dimensionless and not least <= weight * unit_weight_in_kn_m3(name) <= most:
+            shown = f"{weight:g} {name}"
+            sentences.append(f"{place} has a unit weight of {shown}, and not {least:g} to {most:g} kN/m3: the unit?")
+        angle = None if isinstance(field, Water | Fill) else field.friction_angle
+        if angle and angle < _SMALLEST_ANGLE:
+            sentences.append(
+                f"{place} has a friction_angle of {angle:g} degrees: an angle in radians, or a coefficient?"
+            )
+    return sentences[:MOST_NAMED]

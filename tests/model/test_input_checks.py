@@ -255,3 +255,37 @@ def test_all_faults_of_blocks_are_told_at_once():
     with pytest.raises(InputError) as caught:
         build(parse_wall(data(loads=loads), "w"))
     assert [fault.element for fault in caught.value.faults] == ["loads.live.points[0]", "loads.live.points[1]"]
+
+
+@pytest.mark.parametrize("gravity", [[0, -9.81], [0, -9.8], [0.5, -9.81]])
+def test_an_acceleration_as_gravity_is_told(gravity: list[float]):
+    found = warnings_of(data(loads={"gravity": gravity, "live": PUSH}))
+    assert any("loads.gravity is 9.8" in text and "an acceleration?" in text for text in found)
+    assert not warnings_of(data(loads={"gravity": [0.1, -1.35], "live": PUSH}))
+
+
+def test_a_unit_weight_or_an_angle_of_a_load_in_another_unit_is_told():
+    face = {"from": [0, 0], "to": [0, 1]}
+
+    def told(**load: Any) -> list[str]:
+        return warnings_of(data(loads={"dead": load, "live": PUSH}))
+
+    def earth(**changes: Any) -> dict[str, Any]:
+        field = {"level": 1, "unit_weight": 18, "friction_angle": 30, "state": "active"} | changes
+        return {"pressures": [face | {"earth": field}]}
+
+    def fill(**changes: Any) -> dict[str, Any]:
+        return {"fills": [{"level": 2, "unit_weight": 16} | changes]}
+
+    def water(unit_weight: float) -> dict[str, Any]:
+        return {"pressures": [face | {"water": {"level": 1, "unit_weight": unit_weight}}]}
+
+    assert not [*told(**earth()), *told(**fill()), *told(**water(9.81)), *told(**water(0.0))]
+    assert told(**water(9810)) == [
+        "loads.dead.pressures[0] has a unit weight of 9810 kN/m3, and not 0.1 to 35 kN/m3: the unit?"
+    ]
+    assert "has a unit weight of 1800 kN/m3" in "".join(told(**earth(unit_weight=1800)))
+    assert "loads.dead.fills[0] has a unit weight of 0.016 kN/m3" in "".join(told(**fill(unit_weight=0.016)))
+    assert "a friction_angle of 0.52 degrees" in "".join(told(**earth(friction_angle=0.52)))
+    passive = {"mobilised": 0.5, "friction_angle": 0.52}
+    assert "a friction_angle of 0.52 degrees" in "".join(told(**fill(passive=passive)))
