@@ -24,7 +24,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.live_load import with_live_load
-from harness.model.load_cases import load_cases_of, named_loads
+from harness.model.load_cases import load_cases_of, named_loads_of
 from harness.model.method import Method
 from harness.model.method_registry import load_method
 from harness.model.reading import validate
@@ -103,7 +103,7 @@ class LoadPair:
                     f"a domain is that of two different {kind}", f"Give two of them instead of {len(set(given))}"
                 )
         if load_cases or (case.wall.load_case_fields and not live):
-            cases = named_loads(case.wall)
+            cases = named_loads_of(case)
             names = list(load_cases) or [name for name, load in cases.items() if load.own.live is not None]
             if len(names) != 2:
                 raise InputError(

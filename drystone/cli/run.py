@@ -34,7 +34,7 @@ from harness.engine.plan import check_methods, check_order, check_taken, find_ca
 from harness.engine.run import Limits
 from harness.model.envelope import envelope
 from harness.model.errors import MOST_NAMED, InputError, first_few
-from harness.model.load_cases import named_loads
+from harness.model.load_cases import named_loads_of
 from harness.model.method import Status
 from harness.model.method_registry import load_method
 from harness.model.result import Result
@@ -94,7 +94,7 @@ def run(
     chosen = settings_of(method, settings)
     if found.wall.load_case_fields and load_case is None:
         raise InputError(
-            f"it has the load cases {first_few(list(named_loads(found.wall)), MOST_NAMED)}",
+            f"it has the load cases {first_few(list(named_loads_of(found)), MOST_NAMED)}",
             "Choose one: --load-case NAME; `drystone compare` answers all of them",
             found.wall.load_cases_place,
             found.origin,

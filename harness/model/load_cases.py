@@ -78,6 +78,19 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
     return found
 
 
+def named_loads_of(case: Case) -> dict[str, NamedLoads]:
+    """All load cases of the wall of a case by name, as `named_loads`.
+
+    Raises:
+        InputError: as `named_loads`, with the file.
+    """
+    try:
+        return named_loads(case.wall)
+    except InputError as error:
+        error.source = error.source or case.origin
+        raise
+
+
 def _count(loads: Loads) -> int:
     """Forces and pressures of a load case."""
     return sum(len(load.body) + len(load.points) + len(load.pressures) for load in (loads.dead, loads.live or Load()))

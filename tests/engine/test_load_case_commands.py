@@ -129,3 +129,12 @@ def test_a_wall_without_load_cases_refuses_the_name_of_one(wall: Path):
     done = drystone("run", "la-associated", wall, "--load-case", "push")
     assert done.returncode == 2
     assert 'no load case is called "push". A wall gives them in "load_cases"' in done.stderr
+
+
+def test_an_error_of_a_combination_names_the_file(tmp_path: Path):
+    path = tmp_path / "leaning.json"
+    path.write_text(json.dumps(LEANING | {"loads": {}, "load_cases": {}, "combinations": {"worst": {"wind": 1.5}}}))
+    for command in (["run", "la-associated"], ["domain"]):
+        done = drystone(*command, str(path))
+        assert done.returncode == 2
+        assert 'leaning.json: combinations.worst: no load case is called "wind"' in done.stderr
