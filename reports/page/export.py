@@ -156,14 +156,14 @@ def _joints_csv(run: ComparisonRun) -> str:
 
 
 def _bars_csv(run: ComparisonRun) -> str:
-    """The forces of ties and props in all answers, in the columns of `BARS` after case and method."""
+    """The forces of ties and props in all answers: the columns of `BARS` after case and method, the unit of force."""
     rows = (
-        (item.case.id, result.method, *(column.value(bar) for column in BARS))
+        (item.case.id, result.method, *(column.value(bar) for column in BARS), item.case.wall.units.force)
         for item in run.cases
         for result in item.results
         for bar in bar_forces_of(item.case, result)
     )
-    return csv_text(["case", "method", *(column.name for column in BARS)], rows)
+    return csv_text(["case", "method", *(column.name for column in BARS), "units"], rows)
 
 
 def _comparison_frame(run: ComparisonRun) -> pd.DataFrame:

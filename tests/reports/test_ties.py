@@ -121,7 +121,8 @@ def test_report_and_its_data(tmp_path: Path):
     assert "Forces of ties and props" in page
     assert "1 tie, yield force 2 kN; 1 prop, yield force 1.5 kN" in page
     rows = (tmp_path / "report-data" / "bars.csv").read_text(encoding="utf-8").splitlines()
-    assert rows[0] == '"case","method","bar","kind","from","to","tension","least","greatest","state"'
+    assert rows[0] == '"case","method","bar","kind","from","to","tension","least","greatest","state","units"'
+    assert all(row.endswith(',"kN"') for row in rows[1:])
     for method in ("fe", "la"):
         assert any(row.startswith(f'"tied","{method}","raker","prop","right","block",-1.5') for row in rows)
 
