@@ -91,9 +91,9 @@ def lay(wall: Wall, blocks: list[Block], joints: Joints | None = None) -> Laid:
     found = joints or find_joints(wall.interfaces, polygons, names, fixed, shapes, size)
     block_a, block_b, face1, face2 = faces_of(found, index, fixed)
     check_held(names, fixed, block_a, block_b, found)
-    limits = limits_of(Detection() if isinstance(wall.interfaces, list) else wall.interfaces, size)
-    check_single(names, fixed, (block_a, block_b, face1, face2), max(limits.gap, limits.overlap))
     normal = normals_of(
         polygons, centroids, block_a, block_b, face1, face2, found.interfaces, trusted=found.trusted, size=size
     )
+    limits = limits_of(Detection() if isinstance(wall.interfaces, list) else wall.interfaces, size)
+    check_single(names, fixed, (block_a, block_b, face1, face2), max(limits.gap, limits.overlap))
     return Laid(blocks, index, polygons, fixed, weight, centroids, size, found, block_a, block_b, face1, face2, normal)
