@@ -15,11 +15,10 @@ import numpy as np
 
 from drystone.boundary import FAR, Boundary, BoundaryPoint, Stopped
 from drystone.walls import Wall
-from harness.engine import pipeline
-from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.measures import magnitudes
+from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken
-from harness.engine.run import Limits, Run
+from harness.engine.run import Limits
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.errors import MOST_NAMED, InputError, first_few
@@ -285,8 +284,8 @@ def domain(
         InputError: an unknown method or setting, loads that are not two, or a wall that the method refuses.
     """
     pair = LoadPair.of(wall.case, load_cases=load_cases, live=live)
-    limits = Limits(seconds, memory_bytes) if isolated else None
-    return domain_by(pair, method, settings, accuracy=accuracy, most=most, limits=limits, store=store)
+    runs = Runs(Limits(seconds, memory_bytes) if isolated else None, store)
+    return domain_by(pair, method, settings, accuracy=accuracy, most=most, runs=runs)
 
 
 def domain_by(
@@ -296,11 +295,9 @@ def domain_by(
     *,
     accuracy: float | None = None,
     most: int = 200,
-    limits: Limits | None = None,
-    store: str | Path | None = None,
-    fresh: bool = False,
+    runs: Runs = Runs(),
 ) -> Domain:
-    """As `domain`, of two loads, with settings that may have any name.
+    """As `domain`, of two loads, with settings that may have any name; `runs` says how they are made.
 
     Raises:
         InputError: as `domain`.
@@ -312,21 +309,17 @@ def domain_by(
         accuracy = FINEST if exact else 1e-2
     if not 1e-9 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-9 to below 1", "accuracy")
-    executor = InProcess() if limits is None else LocalExecutor(1)
     scale = pair.scale
-    with pipeline.opened_at(store) as opened:
 
-        def run(direction: FloatArray) -> Result:
-            x, y = (direction / scale).tolist()
-            asked = Run(CombinedWall(pair, x, y), method, settings, limits)
-            (record,) = pipeline.execute([asked], opened, 1, fresh=fresh, executor=executor)
-            return record
+    def run(direction: FloatArray) -> Result:
+        x, y = (direction / scale).tolist()
+        return runs.result(CombinedWall(pair, x, y), method, settings)
 
-        boundary = Boundary(pair.loads() / scale[:, None, None], run, accuracy, most)
-        try:
-            (boundary.polygon if exact else boundary.points_between)()
-        except Stopped as stop:
-            boundary.reason = str(stop)
+    boundary = Boundary(pair.loads() / scale[:, None, None], run, accuracy, most)
+    try:
+        (boundary.polygon if exact else boundary.points_between)()
+    except Stopped as stop:
+        boundary.reason = str(stop)
     found = boundary.corners() if exact and not boundary.reason else boundary.all_points()
     return Domain(
         pair.names,

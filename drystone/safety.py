@@ -17,10 +17,9 @@ from typing import Any
 import numpy as np
 
 from drystone.walls import Wall
-from harness.engine import pipeline
-from harness.engine.executors import InProcess, LocalExecutor
+from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken, takers
-from harness.engine.run import Limits, Run
+from harness.engine.run import Limits
 from harness.model.assembly import Assembly
 from harness.model.case import Case
 from harness.model.errors import InputError
@@ -208,8 +207,8 @@ def factor(
         InputError: an unknown method or setting, a share of a live load that the wall does not have, an accuracy out of
             range, or a wall that the method refuses.
     """
-    limits = Limits(seconds, memory_bytes) if isolated else None
-    return factor_by(wall, method, settings, share=share, accuracy=accuracy, limits=limits, store=store)
+    runs = Runs(Limits(seconds, memory_bytes) if isolated else None, store)
+    return factor_by(wall, method, settings, share=share, accuracy=accuracy, runs=runs)
 
 
 def factor_by(
@@ -220,17 +219,14 @@ def factor_by(
     share: float = 0.0,
     accuracy: float | None = None,
     furthest: float = 2.0**16,
-    limits: Limits | None = None,
-    store: str | Path | None = None,
-    fresh: bool = False,
+    runs: Runs = Runs(),
 ) -> FactorOfSafety:
     """As `factor`, with settings that may have any name, `seconds` among them.
 
     Args:
-        wall, method, settings, share, accuracy, store: see `factor`.
+        wall, method, settings, share, accuracy: see `factor`.
         furthest: the factor is sought from 1 / furthest to furthest.
-        limits: of one isolated run; None: all runs are made in this process.
-        fresh: run what is in the store as well.
+        runs: how they are made.
 
     Raises:
         InputError: as `factor`.
@@ -252,17 +248,9 @@ def factor_by(
             "loads.live",
             wall.case.origin,
         )
-    executor = InProcess() if limits is None else LocalExecutor(1)
-    with pipeline.opened_at(store) as opened:
-
-        def run(at: float) -> Result:
-            asked = Run(ReducedWall(wall.case, at, share), method, settings, limits)
-            (record,) = pipeline.execute([asked], opened, 1, fresh=fresh, executor=executor)
-            return record
-
-        search = _Search(run)
-        search.bracket(furthest)
-        search.bisect(accuracy)
+    search = _Search(lambda at: runs.result(ReducedWall(wall.case, at, share), method, settings))
+    search.bracket(furthest)
+    search.bisect(accuracy)
     return FactorOfSafety(
         wall,
         method,

@@ -13,22 +13,20 @@ from drystone.cli.options import (
     cases_option,
     catching,
     check_table_or_figure,
-    fresh_flag,
     json_flag,
     known_methods,
-    memory_option,
     pair,
     print_json,
+    runs_options,
     say,
-    seconds_option,
     settings_option,
     warn,
     write_output,
 )
 from drystone.cli.settings import settings_of
 from drystone.interaction import LoadPair, domain_by
+from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
-from harness.engine.run import Limits
 
 
 @click.command()
@@ -53,12 +51,9 @@ from harness.engine.run import Limits
 @click.option("--accuracy", type=float, help="Relative.  [default: 1e-6 for a polygon, 0.01 for points]")
 @click.option("--most", type=click.IntRange(4), default=200, show_default=True, help="Runs after which it stops.")
 @click.option("-o", "--output", type=OUTPUT, help="Also draw or list it: .pdf, .svg, .png or .csv.")
-@click.option("--store", type=click.Path(path_type=Path), help="Where runs are kept.  [default: nowhere]")
-@fresh_flag
 @json_flag
 @cases_option
-@seconds_option
-@memory_option
+@runs_options
 @catching
 def domain(
     case: str,
@@ -69,12 +64,9 @@ def domain(
     accuracy: float | None,
     most: int,
     output: Path | None,
-    store: Path | None,
-    fresh: bool,
     as_json: bool,
     folders: tuple[Path, ...],
-    seconds: float,
-    memory: int,
+    runs: Runs,
 ) -> None:
     """Find all pairs of multipliers of two live loads under which CASE stands (an id, a case folder or a WALL.json).
 
@@ -91,9 +83,7 @@ def domain(
         settings_of(method, settings),
         accuracy=accuracy,
         most=most,
-        limits=Limits(seconds, memory * 2**20),
-        store=store,
-        fresh=fresh,
+        runs=runs,
     )
     write_output(output, answer.as_csv, answer.plot)
     if as_json:

@@ -11,21 +11,19 @@ from drystone.cli.options import (
     case_argument,
     cases_option,
     catching,
-    fresh_flag,
     json_flag,
     known_methods,
-    memory_option,
     print_json,
+    runs_options,
     say,
-    seconds_option,
     settings_option,
     warn,
 )
 from drystone.cli.settings import settings_of
 from drystone.safety import factor_by
 from drystone.walls import Wall
+from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, find_cases
-from harness.engine.run import Limits
 
 
 @click.command()
@@ -42,14 +40,9 @@ from harness.engine.run import Limits
 @click.option(
     "--accuracy", type=float, help="Relative width of the bracket.  [default: 1e-4, or that of a method that measures]"
 )
-@click.option(
-    "--store", type=click.Path(path_type=Path), help="Where runs are kept, and looked for first.  [default: nowhere]"
-)
-@fresh_flag
 @json_flag
 @cases_option
-@seconds_option
-@memory_option
+@runs_options
 @catching
 def factor(
     case: str,
@@ -57,12 +50,9 @@ def factor(
     settings: tuple[str, ...],
     share: float,
     accuracy: float | None,
-    store: Path | None,
-    fresh: bool,
     as_json: bool,
     folders: tuple[Path, ...],
-    seconds: float,
-    memory: int,
+    runs: Runs,
 ) -> None:
     """Find the factor of safety on friction of CASE (an id, a case folder or a WALL.json).
 
@@ -78,9 +68,7 @@ def factor(
         settings_of(method, settings),
         share=share,
         accuracy=accuracy,
-        limits=Limits(seconds, memory * 2**20),
-        store=store,
-        fresh=fresh,
+        runs=runs,
     )
     if as_json:
         print_json(answer.as_json())

@@ -237,6 +237,25 @@ both_signs_flag = click.option(
     "--both-signs", is_flag=True, help="A horizontal live load both ways; the lower multiplier governs."
 )
 fresh_flag = click.option("--fresh", is_flag=True, help="Repeat runs that are in the store.")
+own_store_option = click.option(
+    "--store", type=click.Path(path_type=Path), help="Where runs are kept, and looked for first.  [default: nowhere]"
+)
+
+
+def runs_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a command whose runs follow from each other: store and limits, which it gets as `runs`."""
+
+    @own_store_option
+    @fresh_flag
+    @seconds_option
+    @memory_option
+    @wraps(command)
+    def with_runs(*args: Any, store: Path | None, fresh: bool, seconds: float, memory: int, **kwargs: Any) -> Any:
+        from harness.engine.pipeline import Runs
+
+        return command(*args, runs=Runs(Limits(seconds, memory * 2**20), store, fresh), **kwargs)
+
+    return with_runs
 
 
 def warn(case: Case) -> None:

@@ -22,6 +22,7 @@ from drystone.cli.options import (
     live_option,
     load_case_option,
     memory_option,
+    own_store_option,
     print_json,
     say,
     seconds_option,
@@ -57,11 +58,7 @@ _SEVERITY = (INPUT_ERROR, 1, 3, 0)
     show_default=True,
     help="Processes for this run, if its method supports several; other methods refuse.",
 )
-@click.option(
-    "--store",
-    type=click.Path(path_type=Path),
-    help="Where the result is kept, and looked for first.  [default: nowhere]",
-)
+@own_store_option
 @fresh_flag
 @click.option("--fields", is_flag=True, help="With --json: contact forces, mechanism, states and path too.")
 @click.option("--joints", is_flag=True, help="The margins of every joint too, the most critical first.")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.engine.executors import Executor, Job, LocalExecutor
+from harness.engine.executors import Executor, InProcess, Job, LocalExecutor
 from harness.engine.judge import judge
 from harness.engine.provenance import judge_version
-from harness.engine.run import Run
+from harness.engine.run import Analysed, Judge, Limits, Run
 from harness.engine.verdict import compare, overall
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
@@ -34,6 +35,33 @@ def opened_at(path: str | Path | None) -> AbstractContextManager[Store | None]:
     from harness.engine.store import open_store
 
     return open_store(Path(path))
+
+
+@dataclass(frozen=True)
+class Runs:
+    """How runs are made that follow from each other, one at a time.
+
+    Attributes:
+        limits: of each, in a child process; None: they are made in this process, without limits.
+        store: file in which results are looked for and kept; None: nowhere.
+        fresh: run what is in the store as well.
+    """
+
+    limits: Limits | None = None
+    store: str | Path | None = None
+    fresh: bool = False
+
+    def result(self, case: Analysed, method: str, settings: Mapping[str, Any], judge: Judge | None = None) -> Result:
+        """The judged result of one run; arguments as of `Run`.
+
+        Raises:
+            InputError: as of `execute`, and what the method refuses where there are no limits.
+        """
+        executor = InProcess() if self.limits is None else LocalExecutor(1)
+        run = Run(case, method, settings, self.limits, judge=judge)
+        with opened_at(self.store) as opened:
+            (result,) = execute([run], opened, 1, fresh=self.fresh, executor=executor)
+        return result
 
 
 def execute(
@@ -122,7 +150,7 @@ def executed(
             known = {
                 "key": run.key,
                 "given": [motion.found_by for motion in run.given],
-                "judge": _word(assemblies.pop(place), result, measured.tolerance),
+                "judge": _word(run, assemblies.pop(place), result, measured.tolerance),
             }
             result = result.model_copy(update=known)
             if store is not None and run.key:
@@ -138,7 +166,7 @@ def judged(run: Run, result: Result, tolerance: float) -> Result:
         InputError: its arrays are not of the size of its wall.
     """
     _fits(run, result)
-    return _held(run, result.model_copy(update={"judge": _word(run.case.assembly, result, tolerance)}))
+    return _held(run, result.model_copy(update={"judge": _word(run, run.case.assembly, result, tolerance)}))
 
 
 def _found(run: Run, store: Store, summaries: Mapping[str, dict[str, Any]] | None) -> Result | None:
@@ -161,8 +189,8 @@ def _found(run: Run, store: Store, summaries: Mapping[str, dict[str, Any]] | Non
     return result
 
 
-def _word(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
-    return judge(assembly, result, tolerance).model_copy(update={"code": judge_version()})
+def _word(run: Run, assembly: Assembly, result: Result, tolerance: float) -> Judgement:
+    return (run.judge or judge)(assembly, result, tolerance).model_copy(update={"code": judge_version()})
 
 
 def _held(run: Run, result: Result) -> Result:

@@ -18,7 +18,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Reference
 from harness.model.foreign.register import program_named
 from harness.model.method import Traits
-from harness.model.result import Result, result_of
+from harness.model.result import Judgement, Result, result_of
 
 LONGEST = 1e9
 """Seconds that a run may be given: thirty years, which clocks and timers still count."""
@@ -80,6 +80,14 @@ class Motion:
         return hashlib.sha256(np.ascontiguousarray(self.joints).tobytes()).hexdigest()[:16]
 
 
+class Judge(Protocol):
+    """What says whether an answer proves its claim: of a wall, a result, and the tolerance of its method."""
+
+    def __call__(self, assembly: Assembly, result: Result, tolerance: float, /) -> Judgement:
+        """See `harness.engine.judge.judge`."""
+        ...
+
+
 @dataclass(frozen=True)
 class Run:
     """One run to be made or found in the store.
@@ -92,6 +100,8 @@ class Run:
         given: motions found on neighbouring walls, which it takes up in place of a search of its own.
         processes: that it may use side by side; they change no answer.
         kept: whether its result may be kept: not where the method is an object that is not installed.
+        judge: of what is asked; None: `harness.engine.judge.judge`, the judge of multipliers. Stored results are judged
+            anew, so that it is no part of the key.
     """
 
     case: Analysed
@@ -102,6 +112,7 @@ class Run:
     given: tuple[Motion, ...] = ()
     processes: int = 1
     kept: bool = True
+    judge: Judge | None = None
 
     @cached_property
     def key(self) -> str:
