@@ -8,13 +8,15 @@ about joints that have opened, and at every point the multiplier is found again 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drystone.settling import check_simple
+from drystone.settling import check_simple, run_followed
 from drystone.walls import Wall
-from harness.engine.settled_judge import judge_moved_collapse, judge_settled_fall
+from harness.engine.pipeline import Runs
+from harness.engine.settled_judge import judge_every_state, states_in_words
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError
 from harness.model.result import Judgement
@@ -22,7 +24,7 @@ from harness.model.result import Judgement
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from methods.la.settling import SettlingSteps
+    from methods.la.settings import SettlingSteps
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +59,7 @@ class CapacityCurve:
     @property
     def sentence(self) -> str:
         """What was found, and what the judge says."""
-        number = len(self.judgements)
-        rejected = [each.sentence for each in self.judgements if not each.accepted]
-        said = f"The judge accepts {'the state' if number == 1 else f'all {number} states'}."
-        if rejected:
-            said = f"The judge rejects {len(rejected)} of {number} states: {rejected[0]}"
+        said = states_in_words(self.judgements)
         begins = f"The multiplier is {self.multiplier[0]:.7g} as drawn"
         if self.ultimate is None:
             return (
@@ -100,7 +98,12 @@ class CapacityCurve:
 
 
 def capacity(
-    wall: Wall, block: str | None = None, tolerance: float = 1e-9, steps: SettlingSteps | None = None
+    wall: Wall,
+    block: str | None = None,
+    tolerance: float = 1e-9,
+    steps: SettlingSteps | None = None,
+    *,
+    runs: Runs = Runs(),
 ) -> CapacityCurve | str:
     """Follow the collapse of a wall on updated geometry until its multiplier is zero; or why this cannot be begun.
 
@@ -109,46 +112,30 @@ def capacity(
         block: whose centroid is the control point; None: the mean displacement of the live load along itself.
         tolerance: the largest residual that the judge accepts.
         steps: between two points; None: a hundredth of a block, at most a fiftieth.
+        runs: how they are made.
 
     Raises:
         InputError: no block is called so or the wall has no live load; strength, bars, loads beside the centroids, or
             supports that move.
     """
-    from methods.la.moved_wall import MovedWall
-    from methods.la.settling import SettlingSteps, settle, with_multiplier
-
     assembly = wall.assembly
     _check(assembly, block)
-    steps = SettlingSteps(first=0.01, longer=1.2, longest=0.02) if steps is None else steps
-    found = settle(MovedWall.at_rest(assembly), steps, with_multiplier)
-    if isinstance(found, str):
-        return WHY.get(found, f"The linear programme of the greatest multiplier is {found}.")
-    places = np.array([point.wall.places for point in found.points])
-    said = [
-        judge_moved_collapse(assembly, point.wall.places, point.value, point.forces, point.mechanism, tolerance)
-        for point in found.points
-    ]
-    last = found.points[-1]
-    if found.fall is not None and found.mechanism is not None:
-        said.append(judge_settled_fall(assembly, 0.0, found.fall.places, found.mechanism, tolerance, bore=last.forces))
-    displacement = np.array([_control(assembly, block, each) for each in places])
+    settings = {} if steps is None else steps.model_dump(mode="json")
+    followed = run_followed(wall, "la-capacity", settings, partial(judge_every_state, tolerance=tolerance), runs)
+    if isinstance(followed, str):
+        return followed
+    states, said = followed
+    displacement = np.array([_control(assembly, block, each) for each in states.places])
     return CapacityCurve(
         assembly,
         "the live load" if block is None else f"block {block}",
         displacement,
-        np.array([point.value for point in found.points]),
-        places,
-        None if found.fall is None else float(displacement[-1]),
-        tuple(said),
-        found.reason,
+        states.value,
+        states.places,
+        None if states.falls is None else float(displacement[-1]),
+        said,
+        states.reason,
     )
-
-
-WHY = {
-    "falls": "The wall falls under its dead load as drawn.",
-    "unbounded": "The live load cannot make the wall collapse.",
-}
-"""Why a curve cannot be begun, by how the programme of the greatest multiplier ended."""
 
 
 def _control(assembly: Assembly, block: str | None, places: FloatArray) -> float:

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from drystone.reactions import moving_blocks, one_alone, reactions
-from drystone.released_supports import ReleasedWall, released
+from drystone.released_supports import OtherSupports, ReleasedWall, released
 from drystone.walls import Wall
-from harness.engine.judge import answered
+from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_held, reaction_of, work_scale
 from harness.model.assembly import FloatArray
 from harness.model.bars import bar_tensions
@@ -84,11 +84,12 @@ class HeldReaction:
         }
 
 
-def held_reactions(wall: Wall, **settings: Any) -> tuple[HeldReaction, HeldReaction] | str:
+def held_reactions(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple[HeldReaction, HeldReaction] | str:
     """The brackets of supports that give way and of supports that push, by `de`; or why there are none.
 
     Args:
         wall: with settlements of one rigid motion; its live load does not act.
+        runs: how they are made.
         settings: of `de`, as orders and accuracy.
 
     Raises:
@@ -98,14 +99,14 @@ def held_reactions(wall: Wall, **settings: Any) -> tuple[HeldReaction, HeldReact
     assembly, method = wall.assembly, load_method("de")
     still = replace(assembly, live=np.zeros_like(assembly.live), support_motion=np.zeros_like(assembly.support_motion))
     check_takes(method, still)
-    extremes = reactions(wall)
+    extremes = reactions(wall, runs=runs)
     if isinstance(extremes, str):
         return extremes
     ends = (extremes[0].value, extremes[1].value)
     if alone := one_alone(assembly, *ends):
         return alone
-    result, judgement = answered(method, still, **settings)
-    if result.finding is not Finding.STANDS or result.forces is None or not judgement.accepted:
+    result = runs.result(OtherSupports(wall.case, "at rest", still), "de", settings)
+    if result.finding is not Finding.STANDS or result.forces is None or not result.judge.accepted:
         return f"Distinct elements do not hold the wall on supports at rest: {result.sentence}"
     beyond = bar_tensions(still, result)
     tensions = np.zeros(0) if beyond is None else beyond
@@ -115,7 +116,7 @@ def held_reactions(wall: Wall, **settings: Any) -> tuple[HeldReaction, HeldReact
     begins = next((end for end in ends if abs(measured - end) <= near), measured)
     found: list[HeldReaction] = []
     for gives_way in (True, False):
-        each = _bracket(wall, method, begins, gives_way, ends, settings)
+        each = _bracket(wall, method, begins, gives_way, ends, settings, runs)
         if isinstance(each, str):
             return each
         found.append(each)
@@ -123,12 +124,18 @@ def held_reactions(wall: Wall, **settings: Any) -> tuple[HeldReaction, HeldReact
 
 
 def _bracket(
-    wall: Wall, method: Method, begins: float, gives_way: bool, extremes: tuple[float, float], settings: dict[str, Any]
+    wall: Wall,
+    method: Method,
+    begins: float,
+    gives_way: bool,
+    extremes: tuple[float, float],
+    settings: dict[str, Any],
+    runs: Runs,
 ) -> HeldReaction | str:
     """The bracket of one sense from the reaction at rest on."""
     assembly = wall.assembly
     guided = released(assembly, begins, not gives_way)
-    result, said = answered(method, guided.assembly, "change of the reaction", **settings)
+    result = guided.result(wall.case, "de", settings, runs)
     state = _state(guided, result)
     if result.bracket is None or result.multiplier is None or result.forces_multiplier is None or state is None:
         return f"No reaction was found of a support that {'gives way' if gives_way else 'pushes'}: {result.sentence}"
@@ -153,7 +160,7 @@ def _bracket(
         own,
         motion,
         moving_blocks(assembly, motion),
-        _of_both(of_forces, said, result),
+        _of_both(of_forces, result),
     )
 
 
@@ -165,11 +172,12 @@ def _state(guided: ReleasedWall, result: Result) -> tuple[FloatArray, FloatArray
     return np.asarray(result.forces, dtype=float), tensions, np.asarray(result.mechanism, dtype=float)
 
 
-def _of_both(of_forces: Judgement, of_bracket: Judgement, bracket: Result) -> Judgement:
+def _of_both(of_forces: Judgement, bracket: Result) -> Judgement:
     """Accepted where the forces hold on the wall as drawn and the bracket on the wall with a guided support.
 
     A bracket that is no answer says why.
     """
+    of_bracket = bracket.judge
     why = "" if bracket.status is Status.OK else f" The change of the reaction {bracket.sentence}."
     return of_forces.model_copy(
         update={

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from drystone.released_supports import released
 from drystone.walls import Wall
-from harness.engine.judge import answered
+from harness.engine.judge import judge
+from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_reaction
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions, with_bars_as_joints
+from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
-from harness.model.method_registry import load_method
+from harness.model.method import Finding
 from harness.model.passive import FILL
-from harness.model.result import Judgement, fastest_vertex
+from harness.model.result import Judgement, Result, fastest_vertex
 from harness.model.units import DIMENSIONLESS
 
 
@@ -51,7 +54,7 @@ class Reaction:
         }
 
 
-def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] | str:
+def reactions(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = Runs()) -> tuple[Reaction, Reaction] | str:
     """The least and the greatest reaction of the supports that settle, with associated flow; or why there are none.
 
     The least is that of supports that give way, the greatest that of supports that push against their motion.
@@ -59,35 +62,38 @@ def reactions(wall: Wall, tolerance: float = 1e-9) -> tuple[Reaction, Reaction] 
     Args:
         wall: with settlements; its live load does not act.
         tolerance: the largest residual that the judge accepts.
+        runs: how they are made.
 
     Raises:
         InputError: no support with a joint moves, or joints crush or are brittle.
     """
-    from methods.la.core.reaction import extreme_reaction
-
     assembly = wall.assembly
     check_reactions(assembly, wall.case.origin)
     found: list[Reaction] = []
     for greatest in (False, True):
-        answer = extreme_reaction(assembly, greatest)
-        if isinstance(answer, str):
-            if answer == "infeasible":
-                return (
-                    "No equilibrium within yield exists under the dead load: the wall falls, wherever its supports go."
-                )
-            return f"The linear programme of the {'greatest' if greatest else 'least'} reaction is {answer}."
-        names = moving_blocks(assembly, answer.mechanism)
-        said = judge_reaction(
-            assembly,
-            answer.reaction,
-            answer.forces,
-            answer.mechanism,
-            greatest=greatest,
-            tolerance=tolerance,
-            tensions=answer.tensions,
-        )
-        found.append(Reaction(answer.reaction, answer.forces, answer.tensions, answer.mechanism, names, said))
+        word = partial(_word, greatest=greatest, within=tolerance)
+        result = runs.result(wall.case, "la-reaction", {"greatest": greatest}, word)
+        if result.finding is not Finding.STANDS:
+            return result.sentence
+        value, forces, tensions, mechanism = _parts(result)
+        found.append(Reaction(value, forces, tensions, mechanism, moving_blocks(assembly, mechanism), result.judge))
     return found[0], found[1]
+
+
+def _parts(result: Result) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+    """Reaction, forces (m, 3), tensions (k,) and mechanism (n, 3) of an answer of `la-reaction`."""
+    said = AnswerDetails(result.details)
+    fields = (result.forces, said.bar_tensions(), said.driven_mechanism)
+    forces, tensions, mechanism = (np.array(each, dtype=float) for each in fields)
+    return said.reaction, forces, tensions, mechanism
+
+
+def _word(assembly: Assembly, result: Result, tolerance: float, *, greatest: bool, within: float) -> Judgement:
+    """The word of the judge, with a tolerance other than that of the method."""
+    if result.finding is not Finding.STANDS:
+        return judge(assembly, result, tolerance)
+    value, forces, tensions, mechanism = _parts(result)
+    return judge_reaction(assembly, value, forces, mechanism, greatest=greatest, tolerance=within, tensions=tensions)
 
 
 def reaction_unit(wall: Wall) -> str:
@@ -141,7 +147,7 @@ def one_alone(assembly: Assembly, low: float, high: float) -> str:
 
 
 def least_known_reactions(
-    wall: Wall, method: str = "la", inside: float = 0.01, tolerance: float = 1e-9
+    wall: Wall, method: str = "la", inside: float = 0.01, tolerance: float = 1e-9, *, runs: Runs = Runs()
 ) -> tuple[Reaction, Reaction] | str:
     """The reactions at which the wall collapses without dilatancy, as far as known; or why there are none.
 
@@ -155,11 +161,12 @@ def least_known_reactions(
         inside: share of the range between the extremes by which the search begins inside it, where the wall stands
             beyond doubt: states in that share are not found.
         tolerance: the largest residual that the judge accepts.
+        runs: how they are made.
 
     Raises:
         InputError: no support with a joint moves, or the supports do not move as one rigid body.
     """
-    extremes = reactions(wall, tolerance)
+    extremes = reactions(wall, tolerance, runs=runs)
     if isinstance(extremes, str):
         return extremes
     assembly, (low, high) = wall.assembly, (each.value for each in extremes)
@@ -169,7 +176,7 @@ def least_known_reactions(
     for greatest, begins in ((False, high - inside * (high - low)), (True, low + inside * (high - low))):
         guided = released(assembly, begins, greatest)
         # The multiplier of the released wall is how far the reaction has changed since the search began.
-        result, judgement = answered(load_method(method), guided.assembly, "change of the reaction")
+        result = guided.result(wall.case, method, {}, runs)
         tensions = bar_tensions(guided.assembly, result)
         if result.multiplier is None or result.mechanism is None or result.forces is None or tensions is None:
             return f"No reaction without dilatancy is known: {result.sentence}"
@@ -183,7 +190,7 @@ def least_known_reactions(
                 tensions[: len(assembly.bars)],
                 mechanism,
                 moving_blocks(assembly, mechanism),
-                judgement,
+                result.judge,
             )
         )
     return found[0], found[1]

@@ -9,17 +9,54 @@ their judge are those of any wall with props and ties (`harness.model.bars`).
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
+from harness.engine.judge import judge
+from harness.engine.pipeline import Runs
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.bars import Bars
+from harness.model.case import Case
 from harness.model.errors import InputError
-from harness.model.result import vertex_velocities
+from harness.model.result import Result, vertex_velocities
 
 STRONG = 1e3
 """Yield force of the guiding bars in dead loads; an answer in which one of them yields is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class OtherSupports:
+    """A wall whose moving supports are at rest or released, as a run sees it.
+
+    Attributes:
+        case: the wall as it is described.
+        change: what is other of its supports, with all digits.
+        assembly: the wall so.
+    """
+
+    case: Case
+    change: str
+    assembly: Assembly
+
+    @property
+    def id(self) -> str:
+        """The name of the wall."""
+        return self.case.id
+
+    @property
+    def content(self) -> str:
+        """Hash of the wall and the change."""
+        return hashlib.sha256(f"{self.case.content} {self.change}".encode()).hexdigest()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Those of the wall as it is described."""
+        return self.case.warnings
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,11 +66,20 @@ class ReleasedWall:
     Attributes:
         assembly: of it: the joints of the wall in their order, its bars and then those that guide.
         carrier: index of the guided block; moving: indices of the supports that it stands for.
+        reaction, greatest: as of `released`.
     """
 
     assembly: Assembly
     carrier: int
     moving: IntArray
+    reaction: float
+    greatest: bool
+
+    def result(self, case: Case, method: str, settings: Mapping[str, Any], runs: Runs) -> Result:
+        """The judged answer of a method, whose multiplier is how far the reaction has changed."""
+        sense = "pushing" if self.greatest else "giving way"
+        wall = OtherSupports(case, f"released {sense} at {self.reaction!r}", self.assembly)
+        return runs.result(wall, method, settings, partial(judge, quantity="change of the reaction"))
 
     def holds(self, tensions: FloatArray) -> bool:
         """Whether no guiding bar yields in tensions (k + 2,)."""
@@ -106,7 +152,7 @@ def released(assembly: Assembly, reaction: float, greatest: bool) -> ReleasedWal
         support_motion=np.zeros((assembly.n_blocks + 1, 3)),
         bars=guided,
     )
-    return ReleasedWall(wall, carrier, moving)
+    return ReleasedWall(wall, carrier, moving, reaction, greatest)
 
 
 def _check_rigid(assembly: Assembly, moving: IntArray, motion: FloatArray) -> None:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from drystone.reactions import check_reactions
 from drystone.walls import Wall
-from harness.engine.settled_judge import judge_settled, judge_settled_fall
+from harness.engine.judge import judge
+from harness.engine.pipeline import Runs
+from harness.engine.settled_judge import judge_last_state, judged_as_one
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError, first_few
-from harness.model.result import Judgement
+from harness.model.followed import FollowedWall
+from harness.model.result import Judgement, Result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -95,49 +100,67 @@ class SettledCollapse:
         return settled_figure(self.assembly, self.places, (self.displacement, self.reaction))
 
 
-def settled_until_collapse(wall: Wall, tolerance: float = 1e-9) -> SettledCollapse | str:
+def settled_until_collapse(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = Runs()) -> SettledCollapse | str:
     """Move the supports as prescribed, on updated geometry, until the wall falls; or why this cannot be begun.
 
     Args:
         wall: with settlements, of dry joints; its live load does not act.
         tolerance: the largest residual that the judge accepts.
+        runs: how they are made.
 
     Raises:
         InputError: no support with a joint moves; or the wall has strength, bars, or loads beside the centroids.
     """
-    from methods.la.moved_wall import MovedWall
-    from methods.la.settling import settle
-
     assembly = wall.assembly
     check_reactions(assembly, wall.case.origin)
     check_simple(assembly, assembly.dead)
-    found = settle(MovedWall.at_rest(assembly))
-    if isinstance(found, str):
-        return f"The linear programme of the least reaction is {found} where the supports begin to move."
-    last = found.points[-1]
-    stands, places = last.wall.displacement, last.wall.places
-    said = [judge_settled(assembly, stands, places, last.value, last.forces, tolerance)]
-    if found.fall is not None and found.mechanism is not None:
-        at = found.fall.displacement
-        bore = last.forces
-        said.append(judge_settled_fall(assembly, at, found.fall.places, found.mechanism, tolerance, bore=bore))
+    followed = run_followed(wall, "la-settling", {}, partial(judge_last_state, tolerance=tolerance), runs)
+    if isinstance(followed, str):
+        return followed
+    states, said = followed
     return SettledCollapse(
         assembly,
-        stands,
-        None if found.fall is None else found.fall.displacement,
-        np.array([point.wall.displacement for point in found.points]),
-        np.array([point.value for point in found.points]),
-        places,
-        last.forces,
+        float(states.displacement[-1]),
+        states.falls,
+        states.displacement,
+        states.value,
+        states.places[-1],
+        states.forces[-1],
         tuple(
             f"{assembly.block_ids[assembly.block_a[p]]} and {assembly.block_ids[assembly.block_b[p]]}"
-            for p in np.flatnonzero(last.wall.closed.sum(axis=1) == 1)
+            for p in np.flatnonzero(states.closed.sum(axis=1) == 1)
         ),
-        None if found.fall is None else found.fall.places,
-        found.mechanism,
-        tuple(said),
-        found.reason,
+        states.fallen,
+        states.falling,
+        said,
+        states.reason,
     )
+
+
+def run_followed(
+    wall: Wall,
+    method: str,
+    settings: Mapping[str, Any],
+    judge_states: Callable[[Assembly, FollowedWall], tuple[Judgement, ...]],
+    runs: Runs,
+) -> tuple[FollowedWall, tuple[Judgement, ...]] | str:
+    """The states of a wall that a method follows, with what the judge says of them one by one; or why there are none.
+
+    The run itself is accepted where all of them are.
+    """
+    said: tuple[Judgement, ...] = ()
+
+    def word(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
+        nonlocal said
+        states = FollowedWall.of(result.details)
+        if states is None:
+            return judge(assembly, result, tolerance)
+        said = judge_states(assembly, states)
+        return judged_as_one(said)
+
+    result = runs.result(wall.case, method, settings, word)
+    states = FollowedWall.of(result.details)
+    return result.sentence if states is None else (states, said)
 
 
 def _apart(low: float, high: float | None) -> tuple[str, str]:

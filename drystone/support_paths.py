@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from drystone.reactions import moving_blocks, reactions
 from drystone.walls import Wall
+from harness.engine.judge import judge
+from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_plateau
-from harness.model.assembly import FloatArray
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import InputError
+from harness.model.followed import SupportPath
 from harness.model.method_registry import check_takes, load_method
-from harness.model.result import Judgement
+from harness.model.result import Judgement, Result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,62 +95,69 @@ class ReactionPath:
         }
 
 
-def reaction_paths(wall: Wall, **settings: Any) -> tuple[ReactionPath, ReactionPath] | str:
+def reaction_paths(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple[ReactionPath, ReactionPath] | str:
     """The paths of supports that give way and of supports that push, by the gap springs of `fe`; or why there are none.
 
     Args:
         wall: with settlements; its live load does not act.
+        runs: how they are made.
         settings: of the springs, as of `fe`.
 
     Raises:
         InputError: no support with a joint moves, or the wall has joints or bars that `fe` does not take.
     """
-    from methods.fe.settings import GapSpringsSettings
-    from methods.fe.support_path import support_path
-
     assembly, method = wall.assembly, load_method("fe")
     if len(assembly.bars):
         raise InputError(
             "the path takes no ties, props and passive fill", "Ask for the two reactions alone, or leave them out"
         )
     check_takes(method, replace(assembly, support_motion=np.zeros_like(assembly.support_motion)))
-    extremes = reactions(wall)
+    extremes = reactions(wall, runs=runs)
     if isinstance(extremes, str):
         return extremes
-    low, high = (each.value for each in extremes)
+    ends = (extremes[0].value, extremes[1].value)
     found: list[ReactionPath] = []
     for gives_way in (True, False):
-        path = support_path(assembly, gives_way, GapSpringsSettings(**settings))
-        if isinstance(path, str):
-            return path
-        said = None
-        if path.mechanism is not None:
-            said = judge_plateau(
-                assembly,
-                float(path.reaction[-1]),
-                path.forces,
-                path.mechanism,
-                gives_way=gives_way,
-                tolerance=method.tolerance,
-                extremes=(low, high),
-            )
+        word = partial(_word, gives_way=gives_way, extremes=ends)
+        result = runs.result(wall.case, "fe-reaction", settings | {"gives_way": gives_way}, word)
+        path = SupportPath.of(result.details)
+        if path is None:
+            return result.sentence
         found.append(
             ReactionPath(
                 gives_way,
                 path.displacement,
                 path.reaction,
-                path.slipping,
-                path.opened,
+                tuple(path.slipping.tolist()),
+                tuple(path.opened.tolist()),
                 path.constant_from,
                 path.forces,
                 path.mechanism,
                 () if path.mechanism is None else moving_blocks(assembly, path.mechanism),
-                (low, high),
-                said,
+                ends,
+                None if path.mechanism is None else result.judge,
                 path.reason,
             )
         )
     return found[0], found[1]
+
+
+def _word(
+    assembly: Assembly, result: Result, tolerance: float, *, gives_way: bool, extremes: tuple[float, float]
+) -> Judgement:
+    """The word of the judge on the constant reaction, where there is one."""
+    path = SupportPath.of(result.details)
+    if path is None or path.mechanism is None:
+        return judge(assembly, result, tolerance)
+    return judge_plateau(
+        assembly,
+        float(path.reaction[-1]),
+        path.forces,
+        path.mechanism,
+        gives_way=gives_way,
+        tolerance=tolerance,
+        extremes=extremes,
+    )
 
 
 def paths_as_csv(paths: tuple[ReactionPath, ...]) -> str:

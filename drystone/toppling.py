@@ -15,13 +15,14 @@ import numpy as np
 
 from drystone.shaking import Shaker, Shaking
 from drystone.walls import Wall
+from harness.engine.pipeline import Runs
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.ground_motion import GRAVITY, STRONGEST, GroundMotion
 from harness.model.method import Finding
 
 if TYPE_CHECKING:
-    from methods.de.time.history import TimeSteps
+    from methods.de.settings import TimeSteps
 
 MOVED = 1e-2
 """Displacement of a block, in sizes of it, under which a motion hardly moves a wall."""
@@ -40,6 +41,7 @@ class LeastShaking:
         falls: under the least multiple found; None: there was none.
         lower, upper: these multiples; zero and infinite where there is none.
         tried: (j, 2) all multiples in ascending order, and 1 where the wall fell, 0 where it stood, nan if undecided.
+        reason: why no more were tried, where a run was ended by a limit; empty where none was.
     """
 
     stands: Shaking | None
@@ -47,16 +49,21 @@ class LeastShaking:
     lower: float
     upper: float
     tried: FloatArray
+    reason: str = ""
 
     @property
     def accepted(self) -> bool:
         """Whether a bracket was found, nothing below it is undecided, and the judge accepts both ends."""
         ends = self.stands is not None and self.falls is not None and self.stands.accepted and self.falls.accepted
-        return ends and not np.isnan(self.tried[self.tried[:, 0] < self.upper, 1]).any()
+        return ends and not self.reason and not np.isnan(self.tried[self.tried[:, 0] < self.upper, 1]).any()
 
     @property
     def sentence(self) -> str:
-        """What was found."""
+        """What was found, and why no more where a run was ended."""
+        return f"{self._found} {self.reason}".rstrip()
+
+    @property
+    def _found(self) -> str:
         below = self.tried[self.tried[:, 0] < self.upper]
         if self.falls is None:
             return f"No multiple up to {self.tried[-1, 0]:.6g} was found that topples the wall."
@@ -89,11 +96,12 @@ def least_shaking(
     *,
     gravity: float = GRAVITY,
     steps: TimeSteps | None = None,
+    runs: Runs = Runs(),
 ) -> LeastShaking:
     """The least multiple of a motion that is found to topple a wall, as a bracket.
 
     Args:
-        wall, motion, gravity, steps: as of `drystone.shake`.
+        wall, motion, gravity, steps, runs: as of `drystone.shake`.
         accuracy: relative width of the bracket.
 
     Raises:
@@ -101,13 +109,20 @@ def least_shaking(
     """
     if not 1e-9 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-9 to below 1", "accuracy")
-    search = _Multiples(Shaker(wall, motion, gravity, steps))
-    search.climb(search.start())
-    search.bisect(accuracy)
+    search, reason = _Multiples(Shaker(wall, motion, gravity, steps, runs)), ""
+    try:
+        search.climb(search.start())
+        search.bisect(accuracy)
+    except _CutOff as error:
+        reason = str(error)
     fell = {Finding.FALLS: 1.0, Finding.STANDS: 0.0}
     tried = [[at, fell.get(search.results[at].finding, math.nan)] for at in sorted(search.results)]
     ends = search.results.get(search.lower), search.results.get(search.upper)
-    return LeastShaking(*ends, search.lower, search.upper, np.array(tried))
+    return LeastShaking(*ends, search.lower, search.upper, np.array(tried), reason)
+
+
+class _CutOff(Exception):
+    """A run was ended by a limit: those that follow would be too."""
 
 
 class _Multiples:
@@ -132,7 +147,9 @@ class _Multiples:
     def tried(self, multiple: float) -> Shaking:
         """The wall shaken by a multiple, kept."""
         if multiple not in self.results:
-            self.results[multiple] = self.shaker.shaken(multiple)
+            self.results[multiple] = found = self.shaker.shaken(multiple)
+            if found.reason:
+                raise _CutOff(f"At {multiple:.6g} times the motion: {found.reason}")
         return self.results[multiple]
 
     def start(self) -> float:

@@ -190,5 +190,5 @@ def _reads_details(node: ast.AST) -> bool:
 
 def test_only_typed_readers_know_the_names_of_details():
     readers = {place for place, node in nodes("harness", "reports", "drystone", "cases") if _reads_details(node)}
-    typed = {"harness/model/displaced.py", "harness/model/load_steps.py"}
+    typed = {f"harness/model/{name}.py" for name in ("displaced", "followed", "load_steps")}
     assert readers == typed | {"harness/model/foreign/result_document.py"}

@@ -16,11 +16,13 @@ from drystone.cli.options import (
     check_table_or_figure,
     json_flag,
     print_json,
+    runs_options,
     say,
     warn,
     write_output,
 )
 from drystone.walls import Wall
+from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
 
 
@@ -30,8 +32,11 @@ from harness.engine.plan import find_cases
 @click.option("-o", "--output", type=OUTPUT, help="Also draw or list the curve: .pdf, .svg, .png or .csv.")
 @json_flag
 @cases_option
+@runs_options
 @catching
-def capacity(case: str, block: str | None, output: Path | None, as_json: bool, folders: tuple[Path, ...]) -> None:
+def capacity(
+    case: str, block: str | None, output: Path | None, as_json: bool, folders: tuple[Path, ...], runs: Runs
+) -> None:
     """Find the capacity curve of CASE (an id, a case folder or a WALL.json): multiplier against displacement.
 
     The wall follows its mechanism by finite rotations, and the multiplier is found again on the way, until it is zero
@@ -41,7 +46,7 @@ def capacity(case: str, block: str | None, output: Path | None, as_json: bool, f
     (found,) = find_cases([case], None, folders)
     warn(found)
     wall = Wall(found)
-    answer = curve_of(wall, block)
+    answer = curve_of(wall, block, runs=runs)
     if isinstance(answer, str):
         if as_json:
             print_json({"ultimate": None, "reason": answer})

@@ -16,12 +16,14 @@ from drystone.cli.options import (
     check_table_or_figure,
     json_flag,
     print_json,
+    runs_options,
     say,
     warn,
     write_output,
 )
 from drystone.reactions import least_known_reactions, reaction_unit, reactions
 from drystone.walls import Wall
+from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError, first_few
 from harness.model.units import DIMENSIONLESS
@@ -57,6 +59,7 @@ SAID = {
 )
 @json_flag
 @cases_option
+@runs_options
 @catching
 def reaction(
     case: str,
@@ -67,6 +70,7 @@ def reaction(
     output: Path | None,
     as_json: bool,
     folders: tuple[Path, ...],
+    runs: Runs,
 ) -> None:
     """Print the least and the greatest reaction of supports of CASE (an id, a case folder or a WALL.json) that move.
 
@@ -86,18 +90,18 @@ def reaction(
     warn(found)
     wall = Wall(found)
     if as_path:
-        _print_paths(wall, output, as_json)
+        _print_paths(wall, runs, output, as_json)
     elif until_collapse:
-        _print_collapse(wall, output, as_json)
+        _print_collapse(wall, runs, output, as_json)
     elif held:
-        _print_held(wall, as_json)
+        _print_held(wall, runs, as_json)
     else:
-        _print_reactions(wall, without_dilatancy, as_json)
+        _print_reactions(wall, runs, without_dilatancy, as_json)
 
 
-def _print_reactions(wall: Wall, without_dilatancy: bool, as_json: bool) -> None:
+def _print_reactions(wall: Wall, runs: Runs, without_dilatancy: bool, as_json: bool) -> None:
     """Two reactions, each with the blocks that move."""
-    answer = least_known_reactions(wall) if without_dilatancy else reactions(wall)
+    answer = least_known_reactions(wall, runs=runs) if without_dilatancy else reactions(wall, runs=runs)
     names = ("giving_way", "pushing") if without_dilatancy else ("least", "greatest")
     if isinstance(answer, str):
         _print_none(answer, names, as_json)
@@ -112,11 +116,11 @@ def _print_reactions(wall: Wall, without_dilatancy: bool, as_json: bool) -> None
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 
-def _print_held(wall: Wall, as_json: bool) -> None:
+def _print_held(wall: Wall, runs: Runs, as_json: bool) -> None:
     """The brackets of a support that gives way and of one that pushes."""
     from drystone.held_reactions import held_reactions
 
-    answer = held_reactions(wall)
+    answer = held_reactions(wall, runs=runs)
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
         _print_none(answer, names, as_json)
@@ -132,11 +136,11 @@ def _print_held(wall: Wall, as_json: bool) -> None:
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 
-def _print_paths(wall: Wall, output: Path | None, as_json: bool) -> None:
+def _print_paths(wall: Wall, runs: Runs, output: Path | None, as_json: bool) -> None:
     """The paths of a support that gives way and of one that pushes."""
     from drystone.support_paths import paths_as_csv, paths_figure, reaction_paths
 
-    answer = reaction_paths(wall)
+    answer = reaction_paths(wall, runs=runs)
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
         _print_none(answer, names, as_json)
@@ -154,11 +158,11 @@ def _print_paths(wall: Wall, output: Path | None, as_json: bool) -> None:
     sys.exit(0 if all(each.accepted for each in answer) else 1)
 
 
-def _print_collapse(wall: Wall, output: Path | None, as_json: bool) -> None:
+def _print_collapse(wall: Wall, runs: Runs, output: Path | None, as_json: bool) -> None:
     """The displacement at collapse."""
     from drystone.settling import settled_until_collapse
 
-    answer = settled_until_collapse(wall)
+    answer = settled_until_collapse(wall, runs=runs)
     if isinstance(answer, str):
         _print_none(answer, ("stands", "falls"), as_json)
     write_output(output, answer.as_csv, answer.plot)

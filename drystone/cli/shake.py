@@ -16,6 +16,7 @@ from drystone.cli.options import (
     finite,
     json_flag,
     print_json,
+    runs_options,
     say,
     warn,
     write_output,
@@ -23,6 +24,7 @@ from drystone.cli.options import (
 from drystone.shaking import shake as shaken
 from drystone.toppling import least_shaking
 from drystone.walls import Wall
+from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError
 from harness.model.ground_motion import GRAVITY
@@ -41,6 +43,7 @@ from harness.model.ground_motion import GRAVITY
 @click.option("-o", "--output", type=OUTPUT, help="Also draw or list the motion: .pdf, .svg, .png or .csv.")
 @json_flag
 @cases_option
+@runs_options
 @catching
 def shake(
     case: str,
@@ -53,6 +56,7 @@ def shake(
     output: Path | None,
     as_json: bool,
     folders: tuple[Path, ...],
+    runs: Runs,
 ) -> None:
     """Shake CASE (an id, a case folder or a WALL.json): does it stand or fall when the ground moves?
 
@@ -69,18 +73,18 @@ def shake(
     wall, asked = Wall(found), motion if pulse is None else pulse
     assert asked is not None
     if least:
-        bracket = least_shaking(wall, asked, accuracy, gravity=gravity)
+        bracket = least_shaking(wall, asked, accuracy, gravity=gravity, runs=runs)
         answer = bracket.falls or bracket.stands
         document, accepted, sentence = bracket.as_json(), bracket.accepted, bracket.sentence
     else:
-        answer = shaken(wall, asked, multiple, gravity=gravity)
+        answer = shaken(wall, asked, multiple, gravity=gravity, runs=runs)
         document, accepted, sentence = answer.as_json(), answer.accepted, answer.sentence
-    if answer is not None:
+    if answer is not None and not answer.reason:
         write_output(output, answer.as_csv, answer.plot)
     if as_json:
         print_json(document)
     else:
         say(sentence)
-        if answer is not None:
+        if answer is not None and not answer.reason:
             say(f"Engine: {answer.engine}; a rocking block keeps {answer.impact:.4f} of its speed at an impact.")
     sys.exit(0 if accepted else 1)

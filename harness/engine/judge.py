@@ -233,16 +233,14 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
     return said
 
 
-def answered(
-    method: Method, assembly: Assembly, quantity: str = "multiplier", **settings: Any
-) -> tuple[Result, Judgement]:
-    """What a method answers in this process, and what the judge says of it, which calls the multiplier `quantity`."""
+def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:
+    """What a method answers in this process, and what the judge says of it."""
     check_takes(method, assembly)
     answer = checked(method.solve(assembly.copied(), method.Settings.model_validate(settings)), assembly)
     result = result_of(
         answer, assembly, case=assembly.name, method=method.name, family=method.family, traits=method.traits
     )
-    return result, judge(assembly, result, method.tolerance, quantity)
+    return result, judge(assembly, result, method.tolerance)
 
 
 WITHOUT_END = 1e-12

@@ -115,6 +115,7 @@ JUDGE = tuple(
     for name in (
         *("judge", "judge_breaking", "judge_dead_load", "judge_decision", "judge_law"),
         *("bar_checks", "brittle_checks", "crushing", "measured_motion", "measures", "residuals"),
+        *("motion_judge", "reaction_judge", "settled_judge"),
     )
 )
 """The modules that judge, besides `harness.model`."""

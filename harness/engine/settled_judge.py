@@ -28,6 +28,7 @@ from harness.engine.judge_law import beyond_lift
 from harness.engine.reaction_judge import held
 from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.followed import FollowedWall
 from harness.model.geometry import shapes_of
 from harness.model.limit import gross_power
 from harness.model.result import Judgement, fastest_vertex, relative_velocities
@@ -53,6 +54,64 @@ class _Moved:
     meets: BoolArray
     gap: FloatArray
     residuals: dict[str, float]
+
+
+def judge_last_state(assembly: Assembly, states: FollowedWall, tolerance: float) -> tuple[Judgement, ...]:
+    """What is said of the last state of a wall whose supports move and, where there is one, of the fall.
+
+    Args:
+        assembly, tolerance: as for `judge_settled`.
+        states: of the wall, with reactions.
+    """
+    at, value = float(states.displacement[-1]), float(states.value[-1])
+    last = judge_settled(assembly, at, states.places[-1], value, states.forces[-1], tolerance)
+    return (last, *_judge_end(assembly, states, states.falls, tolerance))
+
+
+def judge_every_state(assembly: Assembly, states: FollowedWall, tolerance: float) -> tuple[Judgement, ...]:
+    """What is said of all states of a collapse that goes on and, where there is one, of the fall.
+
+    Args:
+        assembly, tolerance: as for `judge_moved_collapse`.
+        states: of the wall, with multipliers.
+    """
+    said = [
+        judge_moved_collapse(assembly, places, value, forces, mechanism, tolerance)
+        for places, value, forces, mechanism in zip(
+            states.places, states.value.tolist(), states.forces, states.mechanisms, strict=True
+        )
+    ]
+    return (*said, *_judge_end(assembly, states, 0.0, tolerance))
+
+
+def states_in_words(said: tuple[Judgement, ...]) -> str:
+    """How many states of an answer are accepted."""
+    rejected = [each.sentence for each in said if not each.accepted]
+    number = len(said)
+    if rejected:
+        return f"The judge rejects {len(rejected)} of {number} states: {rejected[0]}"
+    return f"The judge accepts {'the state' if number == 1 else f'all {number} states'}."
+
+
+def judged_as_one(said: tuple[Judgement, ...]) -> Judgement:
+    """One judgement of all states of an answer, accepted where each is; the residuals are the largest of each name."""
+    residuals: dict[str, float] = {}
+    for each in said:
+        residuals |= {name: max(value, residuals.get(name, value)) for name, value in each.residuals.items()}
+    accepted = all(each.accepted for each in said)
+    return Judgement(
+        residuals=residuals, tolerance=said[0].tolerance, accepted=accepted, sentence=states_in_words(said)
+    )
+
+
+def _judge_end(
+    assembly: Assembly, states: FollowedWall, displacement: float | None, tolerance: float
+) -> tuple[Judgement, ...]:
+    """What is said of the fall behind the last state; nothing where none was found."""
+    if displacement is None or states.fallen is None or states.falling is None:
+        return ()
+    bore = states.forces[-1]
+    return (judge_settled_fall(assembly, displacement, states.fallen, states.falling, tolerance, bore=bore),)
 
 
 def judge_settled(

@@ -118,6 +118,7 @@ class Traits(BaseModel):
         any_brittle: it takes joints that lose their strength once they have moved; other methods refuse such a wall.
         any_bars: it takes ties, props and passive fill; other methods refuse such a wall.
         any_crushing: it takes joints with compressive strength; other methods refuse such a wall.
+        any_settlements: it takes supports that move, and finds what they bear; other methods refuse such a wall.
         moves_no_lower: it measures when rigid blocks on even faces move (`details["lowest_moving"]`): where theory
             knows the least multiplier, moving below it is an error.
         colour: of its curves, as "#rrggbb"; empty: the drawing chooses.
@@ -140,6 +141,7 @@ class Traits(BaseModel):
     any_brittle: bool = False
     any_bars: bool = False
     any_crushing: bool = False
+    any_settlements: bool = False
     moves_no_lower: bool = False
     colour: str = Field(default="", pattern="^(#[0-9a-f]{6})?$")
     marker: str = ""
@@ -253,7 +255,12 @@ UNLISTED = "drystone.unlisted_methods"
 """Group of entry points of methods that run by name and stand in no list."""
 
 
+OF_COMMANDS = "drystone.command_methods"
+"""Group of entry points of methods that commands of their own run, as `drystone reaction`: nobody names them, as their
+answers are about other questions than the multiplier."""
+
+
 @cache
 def method_points() -> tuple[EntryPoint, ...]:
     """The entry points of all installed methods; looked for once in a process."""
-    return (*entry_points(group=GROUP), *entry_points(group=UNLISTED))
+    return tuple(point for group in (GROUP, UNLISTED, OF_COMMANDS) for point in entry_points(group=group))

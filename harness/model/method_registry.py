@@ -11,14 +11,14 @@ from harness.model.assembly import Assembly
 from harness.model.errors import InputError, first_few
 from harness.model.foreign.program_method import method_named
 from harness.model.foreign.register import programs
-from harness.model.method import UNLISTED, Method, method_points
+from harness.model.method import OF_COMMANDS, UNLISTED, Method, method_points
 
 
 def check_takes(method: Method, assembly: Assembly) -> None:
     """Refuse a wall with joints or supports that a method does not take.
 
     Dilatancy and each strength of joints, ties and props are taken by methods whose traits say so; supports that move
-    by none for a multiplier, but for a reaction (`drystone.reactions`, `settling`, `held_reactions`).
+    by those that find a reaction in place of a multiplier.
 
     Raises:
         InputError: the wall has such joints or supports.
@@ -61,7 +61,7 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             f"Take a method that follows crushing (--method {methods_with('any_crushing')[0]}; all of them: "
             f"{', '.join(methods_with('any_crushing'))}), or leave it out",
         )
-    if np.any(assembly.support_motion):
+    if np.any(assembly.support_motion) and not method.traits.any_settlements:
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))
         raise InputError(
             f"{method.name} takes supports at rest only; {assembly.block_ids[block]} moves",
@@ -70,8 +70,8 @@ def check_takes(method: Method, assembly: Assembly) -> None:
 
 
 def method_names() -> list[str]:
-    """Names of all methods, sorted: the installed ones and the programs of `methods.toml`."""
-    return sorted({point.name for point in method_points()} | set(programs()))
+    """Names of all methods that users may name, sorted: the installed ones and the programs of `methods.toml`."""
+    return sorted({point.name for point in method_points() if point.group != OF_COMMANDS} | set(programs()))
 
 
 def listed_methods() -> list[str]:

@@ -10,6 +10,7 @@ from methods.de.settings import (
     ReleaseSettings,
     SoftSettings,
     SweepSettings,
+    TimeHistorySettings,
     UnevenSettings,
 )
 
@@ -146,3 +147,14 @@ DE_SOFT = Listed(
     ),
 )
 """Distinct elements with deformable joints and rounded corners (`de-soft`)."""
+
+DE_TIME = Listed(
+    name="de-time",
+    family="de",
+    title="distinct elements in time",
+    solver="methods.de.time.method:TimeHistories",
+    Settings=TimeHistorySettings,
+    tolerance=1e-3,
+    traits=Traits(),
+)
+"""A wall on ground that accelerates, for `drystone shake`."""

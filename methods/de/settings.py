@@ -208,3 +208,37 @@ class SoftSettings(Settings):
     relaxations: int = Field(default=20, ge=1)
     lean: float = Field(default=2.5e-3, gt=0.0)
     stiffest: float = Field(default=30.0, ge=1.0)
+
+
+class TimeSteps(Settings):
+    """How motion in time is followed.
+
+    Attributes:
+        time_step: of the motion [sqrt(length_scale / gravity)]; rocking blocks of 1 m lose 1e-3 of e with 3e-3.
+        iterations: sweeps of the contact solver in a step.
+        radius, slop: see `BodyTuning`; a slop of 1e-5 sizes of a block turns a joint by as much.
+        frames: states that are kept, at most; of a wall of more than 100 blocks fewer, down to 200.
+        after: longest time that is followed once the ground rests [s].
+    """
+
+    time_step: float = 1e-3
+    iterations: int = 60
+    radius: float = 1e-6
+    slop: float = 1e-5
+    frames: int = 6000
+    after: float = 60.0
+
+
+class TimeHistorySettings(TimeSteps):
+    """Settings of `de-time`.
+
+    Attributes:
+        time: where the pieces of the motion of the ground begin and end, from zero [s].
+        first, last: acceleration at the beginning and at the end of each piece, to the right [g].
+        gravity: acceleration g [length/s2].
+    """
+
+    time: tuple[float, ...]
+    first: tuple[float, ...]
+    last: tuple[float, ...]
+    gravity: float = Field(gt=0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.model.method import Listed, Traits
-from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
+from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings, SupportPathSettings
 
 FE = Listed(
     name="fe",
@@ -65,3 +65,14 @@ FE_QP = Listed(
     ),
 )
 """Each step as convex quadratic programmes with frozen friction limits (`fe-qp`)."""
+
+FE_REACTION = Listed(
+    name="fe-reaction",
+    family="fe",
+    title="FE, reaction against displacement",
+    solver="methods.fe.support_path:ReactionPaths",
+    Settings=SupportPathSettings,
+    tolerance=FE.tolerance,
+    traits=Traits(elastic=True, any_dilatancy=True, any_strength=True, any_settlements=True),
+)
+"""The reaction against the displacement of supports, for `drystone reaction --path`."""

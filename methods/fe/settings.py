@@ -31,6 +31,16 @@ class GapSpringsSettings(GapSettings):
     load_steps: int = Field(0, ge=0, le=1000)
 
 
+class SupportPathSettings(GapSpringsSettings):
+    """Settings of `fe-reaction`: those of the springs.
+
+    Attributes:
+        gives_way: whether the supports move as prescribed; else they push, backwards.
+    """
+
+    gives_way: bool = True
+
+
 class NewtonSettings(GapSettings):
     """Settings of `fe-newton`.
 

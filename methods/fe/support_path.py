@@ -14,8 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.followed import SupportPath
+from harness.model.method import Answer, Finding, Solver, Status
 from harness.model.result import fastest_vertex
-from methods.fe.settings import GapSpringsSettings
+from methods.fe.settings import GapSpringsSettings, SupportPathSettings
 from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS
 from methods.springs.model.point_loops import point_strains
@@ -46,30 +48,6 @@ class SupportSteps:
     same: float = 1e-7
     most: int = 80
     noise: float = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class SupportPath:
-    """The reaction against the displacement of the supports, and the state at its end. k points.
-
-    Attributes:
-        displacement: (k,) of the fastest vertex of the supports [length]; it scales with 1 / normal_stiffness.
-        reaction: (k,) work on the prescribed motion [force where that is a translation by one].
-        slipping, opened: (k,) numbers of gap points.
-        forces: (m, 3) contact forces at the last point [force].
-        mechanism: (n, 3) motion of all blocks on the plateau, with the supports as prescribed; None without a plateau.
-        constant_from: displacement from which the reaction is constant [length]; None without a plateau.
-        reason: why there is no plateau; empty where there is one.
-    """
-
-    displacement: FloatArray
-    reaction: FloatArray
-    slipping: tuple[int, ...]
-    opened: tuple[int, ...]
-    forces: FloatArray
-    mechanism: FloatArray | None
-    constant_from: float | None
-    reason: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,10 +250,29 @@ def _path(
     return SupportPath(
         displacement=np.array([point.displacement for point in points]) * model.displacement,
         reaction=np.array([point.reaction for point in points]),
-        slipping=tuple(int(np.count_nonzero(state >= SLIP_PLUS)) for state in states),
-        opened=tuple(int(np.count_nonzero(state == OPEN)) for state in states),
+        slipping=np.array([np.count_nonzero(state >= SLIP_PLUS) for state in states]),
+        opened=np.array([np.count_nonzero(state == OPEN) for state in states]),
         forces=points[-1].forces,
         mechanism=mechanism,
         constant_from=None if constant_from is None else constant_from * model.displacement,
         reason=reason,
     )
+
+
+class ReactionPaths(Solver):
+    """The reaction of supports against the displacement that is imposed on them (`fe-reaction`)."""
+
+    def solve(self, assembly: Assembly, settings: SupportPathSettings) -> Answer:
+        """The path, as details; the forces are those at its end."""
+        found = support_path(assembly, settings.gives_way, settings)
+        if isinstance(found, str):
+            return Answer(Status.NOT_CONVERGED, Finding.NONE, found)
+        return Answer(
+            Status.NOT_CONVERGED if found.reason else Status.OK,
+            Finding.STANDS,
+            found.reason or f"The reaction is constant at {found.reaction[-1]:.7g}.",
+            forces=found.forces,
+            forces_multiplier=0.0,
+            path={"displacement": found.displacement.tolist(), "reaction": found.reaction.tolist()},
+            details=found.as_details(),
+        )

@@ -6,10 +6,13 @@ from harness.model.method import Listed, Traits
 from methods.la.settings import (
     AssociatedSettings,
     BoundSettings,
+    CapacitySteps,
     CvxpySettings,
     FromFeSettings,
     PaperSettings,
+    ReactionSettings,
     SearchSettings,
+    SettlingSteps,
     TrescaSettings,
 )
 
@@ -148,3 +151,36 @@ LA_FROM_FE = Listed(
     ),
 )
 """Ray descent from the finite-element collapse state, against a cold start (`la-from-fe`)."""
+
+LA_REACTION = Listed(
+    name="la-reaction",
+    family="la",
+    title="LA, least or greatest reaction",
+    solver="methods.la.supports:ExtremeReactions",
+    Settings=ReactionSettings,
+    tolerance=1e-9,
+    traits=Traits(any_dilatancy=True, any_strength=True, any_bars=True, any_settlements=True),
+)
+"""Least or greatest reaction of supports that move, for `drystone reaction`."""
+
+LA_SETTLING = Listed(
+    name="la-settling",
+    family="la",
+    title="LA, supports that move far",
+    solver="methods.la.supports:SettledSupports",
+    Settings=SettlingSteps,
+    tolerance=1e-9,
+    traits=Traits(any_dilatancy=True, any_settlements=True),
+)
+"""How far supports can move, on updated geometry, for `drystone reaction --until-collapse`."""
+
+LA_CAPACITY = Listed(
+    name="la-capacity",
+    family="la",
+    title="LA, collapse that goes on",
+    solver="methods.la.supports:FollowedCollapse",
+    Settings=CapacitySteps,
+    tolerance=1e-9,
+    traits=Traits(any_dilatancy=True),
+)
+"""The multiplier on updated geometry, for `drystone capacity`."""

@@ -15,22 +15,7 @@ from scipy.sparse.linalg import spsolve
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.displaced import carried
-
-
-@dataclass(frozen=True)
-class ClosureTolerances:
-    """How exactly points that meet are brought together again after a step along a mechanism.
-
-    Attributes:
-        distance: between them at the end, in sizes of a block.
-        steps: of Newton's method, at most.
-        damping: added to the normal equations, as a share of their mean diagonal: closed joints give more conditions
-            than there are motions.
-    """
-
-    distance: float = 1e-13
-    steps: int = 30
-    damping: float = 1e-12
+from methods.la.settings import ClosureTolerances
 
 
 @dataclass(frozen=True, eq=False)

@@ -129,3 +129,64 @@ class FromFeSettings(Settings):
     seed: int = Field(default=0, ge=0)
     fe_method: str = "fe"
     failures: int = Field(default=12, ge=1)
+
+
+class ReactionSettings(Settings):
+    """Settings of `la-reaction`.
+
+    Attributes:
+        greatest: whether the greatest reaction is asked for; else the least.
+    """
+
+    greatest: bool = False
+
+
+class ClosureTolerances(Settings):
+    """How exactly points that meet are brought together again after a step along a mechanism.
+
+    Attributes:
+        distance: between them at the end, in sizes of a block.
+        steps: of Newton's method, at most.
+        damping: added to the normal equations, as a share of their mean diagonal: closed joints give more conditions
+            than there are motions.
+    """
+
+    distance: float = 1e-13
+    steps: int = 30
+    damping: float = 1e-12
+
+
+class SettlingSteps(Settings):
+    """Steps of the displacement. Lengths are in sizes of a block, moved by the fastest vertex of the supports.
+
+    Attributes:
+        first, longest: step; longer: factor on the next. Between two steps nothing changes but by the linkage, so that
+            they only space the points of the curve.
+        width: to which the largest displacement with an admissible state is bisected: forces are exact to 1e-12.
+        proofs: powers of ten of the width beyond it, at most, at which a mechanism is looked for that proves the fall;
+            immense: forces, in dead loads of the wall, that it would need to stand in spite of that. Rounding leaves
+            each contact half a unit in the last place to close by, so the proof takes a displacement of about 1e-7.
+        moves: rates below this share of the fastest vertex are none: those of a vertex are exact to 1e-12.
+        far: displacement after which the supports are followed no further.
+        most: steps.
+        closure: how exactly pins are closed.
+    """
+
+    first: float = 0.02
+    longer: float = 1.5
+    longest: float = 0.1
+    width: float = 1e-9
+    proofs: int = 6
+    immense: float = 1e7
+    moves: float = 1e-8
+    far: float = 1e3
+    most: int = 20_000
+    closure: ClosureTolerances = Field(default_factory=ClosureTolerances)
+
+
+class CapacitySteps(SettlingSteps):
+    """Steps of a collapse that goes on, shorter: a curve of them is drawn."""
+
+    first: float = 0.01
+    longer: float = 1.2
+    longest: float = 0.02

@@ -30,7 +30,8 @@ from harness.model.result import fastest_vertex
 from methods.la.core.problem import make_problem
 from methods.la.core.reaction import extreme_reaction
 from methods.la.core.vertex_programmes import force_programme
-from methods.la.moved_wall import ClosureTolerances, MovedWall
+from methods.la.moved_wall import MovedWall
+from methods.la.settings import ClosureTolerances, SettlingSteps
 from methods.numerics.linear_programme import INFINITY, Programme
 
 FALLS, CLOSES, PARTS, STUCK = "falls", "closes", "parts", "stuck"
@@ -41,35 +42,6 @@ WHY = {
     STUCK: "From there on no multiplier of the live load is in equilibrium with these open joints: others would open.",
 }
 """Why a wall was followed no further."""
-
-
-@dataclass(frozen=True)
-class SettlingSteps:
-    """Steps of the displacement. Lengths are in sizes of a block, moved by the fastest vertex of the supports.
-
-    Attributes:
-        first, longest: step; longer: factor on the next. Between two steps nothing changes but by the linkage, so that
-            they only space the points of the curve.
-        width: to which the largest displacement with an admissible state is bisected: forces are exact to 1e-12.
-        proofs: powers of ten of the width beyond it, at most, at which a mechanism is looked for that proves the fall;
-            immense: forces, in dead loads of the wall, that it would need to stand in spite of that. Rounding leaves
-            each contact half a unit in the last place to close by, so the proof takes a displacement of about 1e-7.
-        moves: rates below this share of the fastest vertex are none: those of a vertex are exact to 1e-12.
-        far: displacement after which the supports are followed no further.
-        most: steps.
-        closure: how exactly pins are closed.
-    """
-
-    first: float = 0.02
-    longer: float = 1.5
-    longest: float = 0.1
-    width: float = 1e-9
-    proofs: int = 6
-    immense: float = 1e7
-    moves: float = 1e-8
-    far: float = 1e3
-    most: int = 20_000
-    closure: ClosureTolerances = ClosureTolerances()
 
 
 @dataclass(frozen=True, eq=False)

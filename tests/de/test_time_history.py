@@ -20,7 +20,8 @@ from harness.model.errors import InputError
 from harness.model.ground_motion import GroundMotion, pulses_of, read_motion
 from harness.model.method import Finding
 from methods.de.engines.pymunk_blocks import PymunkBlocks
-from methods.de.time.history import TimeSteps
+from methods.de.settings import TimeSteps
+from methods.de.time.history import tuning
 from methods.de.time.impact import HOUSNER, measured_impact
 from tests.commands import drystone as command
 from tests.walls import stack, wall_data
@@ -112,7 +113,7 @@ def test_period_of_rocking(share: float, exact: float):
     assert 4.0 * quad(inverse_speed, 0.0, 1.0)[0] == pytest.approx(exact, abs=1e-6)
     wall = block(friction=10.0).assembly
     steps = TimeSteps(time_step=5e-4)
-    space = PymunkBlocks(wall, iterations=steps.iterations, options=steps.tuning, weighed=True)
+    space = PymunkBlocks(wall, iterations=steps.iterations, options=tuning(steps), weighed=True)
     (free,) = wall.free
     turn = share * ALPHA
     arm = np.array([0.5 * WIDTH, 0.5 * HEIGHT])

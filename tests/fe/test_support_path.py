@@ -14,8 +14,9 @@ from drystone.reactions import reactions
 from drystone.support_paths import ReactionPath, paths_as_csv, reaction_paths
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.errors import InputError
+from harness.model.followed import SupportPath
 from methods.fe.settings import GapSpringsSettings
-from methods.fe.support_path import SupportPath, SupportSteps, support_path
+from methods.fe.support_path import SupportSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
 from tests.moving_supports import BRICKS, bricks, segmental, semicircle, weight

@@ -15,7 +15,8 @@ from drystone.capacity_curve import CapacityCurve, capacity
 from harness.engine.settled_judge import judge_moved_collapse
 from harness.model.errors import InputError
 from methods.la.moved_wall import MovedWall
-from methods.la.settling import SettledUntil, SettlingSteps, settle, with_multiplier
+from methods.la.settings import SettlingSteps
+from methods.la.settling import SettledUntil, settle, with_multiplier
 from tests.commands import drystone as command
 from tests.moving_supports import semicircle
 from tests.walls import PUSH, stack, wall_data

@@ -83,7 +83,7 @@ def test_judge_calls_the_reaction_what_it_is():
 
 def test_judge_names_the_quantity_in_whatever_it_finds_wrong():
     guided = released(drystone.build_wall(data(DOWN)).assembly, 2.0, True)
-    result, right = answered(load_method("la"), guided.assembly, "thrust")
+    result, right = answered(load_method("la"), guided.assembly)
     assert right.accepted
     assert result.multiplier is not None
     wrong: list[tuple[dict[str, Any], str]] = [

@@ -15,8 +15,9 @@ import drystone
 from drystone.settling import SettledCollapse, settled_until_collapse
 from harness.engine.settled_judge import judge_settled, judge_settled_fall
 from harness.model.errors import InputError
-from methods.la.moved_wall import ClosureTolerances, MovedWall, support_places
-from methods.la.settling import SettledUntil, SettlingSteps, settle
+from methods.la.moved_wall import MovedWall, support_places
+from methods.la.settings import ClosureTolerances, SettlingSteps
+from methods.la.settling import SettledUntil, settle
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, data
 from tests.moving_supports import bricks, segmental, semicircle, tilted

@@ -18,32 +18,8 @@ from harness.model.deadline import Deadline
 from harness.model.ground_motion import GroundMotion
 from harness.model.method import Finding
 from methods.de.engines.pymunk_blocks import BodyTuning, PymunkBlocks
+from methods.de.settings import TimeSteps
 from methods.de.time.fallen import Stillness, below_supports, fallen_blocks, patience
-
-
-@dataclass(frozen=True)
-class TimeSteps:
-    """How motion in time is followed.
-
-    Attributes:
-        time_step: of the motion [sqrt(length_scale / gravity)]; rocking blocks of 1 m lose 1e-3 of e with 3e-3.
-        iterations: sweeps of the contact solver in a step.
-        radius, slop: see `BodyTuning`; a slop of 1e-5 sizes of a block turns a joint by as much.
-        frames: states that are kept, at most; of a wall of more than 100 blocks fewer, down to 200.
-        after: longest time that is followed once the ground rests [s].
-    """
-
-    time_step: float = 1e-3
-    iterations: int = 60
-    radius: float = 1e-6
-    slop: float = 1e-5
-    frames: int = 6000
-    after: float = 60.0
-
-    @property
-    def tuning(self) -> BodyTuning:
-        """Of the blocks in pymunk."""
-        return BodyTuning(self.time_step, self.radius, self.slop)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +43,11 @@ class TimeHistory:
     fallen: tuple[int, ...]
     at_rest: bool
     steps: int
+
+
+def tuning(steps: TimeSteps) -> BodyTuning:
+    """Of the blocks in pymunk."""
+    return BodyTuning(steps.time_step, steps.radius, steps.slop)
 
 
 class Count(NamedTuple):
@@ -135,7 +116,7 @@ def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: Time
     push = np.zeros((assembly.n_blocks, 3))
     push[:, 0] = np.where(assembly.fixed, 0.0, -assembly.weight)
     moved = replace(assembly, live=push)
-    space = PymunkBlocks(moved, iterations=steps.iterations, options=steps.tuning, weighed=True)
+    space = PymunkBlocks(moved, iterations=steps.iterations, options=tuning(steps), weighed=True)
     _load_contacts(space, steps)
     pushes = motion.means(count.step * np.arange(count.moving + 1, dtype=float))
     still = Stillness(int(np.ceil(patience(assembly) / (count.stride * steps.time_step))), assembly.length_scale)

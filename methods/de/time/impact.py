@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.de.engines.pymunk_blocks import PymunkBlocks
-from methods.de.time.history import TimeSteps
+from methods.de.settings import TimeSteps
+from methods.de.time.history import tuning
 
 SLENDERNESS = 0.2
 """Width over height of the block that rocks."""
@@ -19,6 +22,7 @@ LONGEST = 30.0
 """Time in which a block released at half its angle alpha turns back twice: three times what it takes, 8.8."""
 
 
+@functools.cache
 def measured_impact(steps: TimeSteps) -> float:
     """Ratio e of the angular velocities of a block at an impact, by the energies before and after it.
 
@@ -28,7 +32,7 @@ def measured_impact(steps: TimeSteps) -> float:
     stack = {"type": "stack", "width": 2.0 * SLENDERNESS, "height": 2.0, "count": 1}
     block = build(Wall.model_validate({"format": "wall/1", "unit_weight": 1.0, "friction": 100.0, "pattern": stack}))
     wall = block.assembly
-    space = PymunkBlocks(wall, iterations=steps.iterations, options=steps.tuning, weighed=True)
+    space = PymunkBlocks(wall, iterations=steps.iterations, options=tuning(steps), weighed=True)
     (free,) = wall.free
     turn = -0.5 * np.arctan(SLENDERNESS)
     arm = np.array([-SLENDERNESS, 1.0])  # from the right edge to the centroid
