@@ -36,7 +36,7 @@ from harness.model.writing import write_whole
 
 
 @click.command()
-@click.argument("wall", type=click.Path(path_type=Path))
+@case_argument
 @click.option(
     "--method",
     shell_complete=known_methods,
@@ -45,16 +45,19 @@ from harness.model.writing import write_whole
     help="The method that is run once for each set of joints.",
 )
 @json_flag
+@cases_option
 @catching
-def validate(wall: Path, method: str, as_json: bool) -> None:
-    """List everything that is wrong or doubtful in WALL.json, and its joints and answer over the tolerance.
+def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...]) -> None:
+    """List everything that is wrong or doubtful in CASE (an id, a case folder, a WALL.json or a drawing).
+
+    Its joints and answer over the tolerance are listed too.
 
     Each fault and doubt has its place, its size and what would mend it; `drystone show` draws them under the same
     numbers. A tolerance is a good one where its neighbours find the same joints. Exit code 2 if the wall cannot be
     built as it stands; the list and the table are printed all the same.
     """
     check_methods([method], "--method")
-    looked = _looked_at(wall)
+    looked = _looked_at(case, folders)
     joints = looked.built.assembly.n_interfaces if looked.built is not None else None
     plateaus = _plateaus(looked, method)
     advice = suggested(plateaus)
@@ -89,12 +92,18 @@ def validate(wall: Path, method: str, as_json: bool) -> None:
     sys.exit(INPUT_ERROR if looked.faults else 0)
 
 
-def _looked_at(path: Path) -> Inspection:
-    """A wall file or a drawing looked over.
+def _looked_at(case: str, folders: tuple[Path, ...]) -> Inspection:
+    """A case, a wall file or a drawing looked over.
 
     Raises:
-        InputError: nothing in it can be looked at.
+        InputError: there is none, or nothing in it can be looked at.
     """
+    path = Path(case)
+    if not path.is_file():
+        (found,) = find_cases([case], None, folders)
+        for note in found.notes:
+            say(f"drystone: {note}", err=True)
+        return inspect(found.wall, found.id)
     wall, before = salvaged(read_document(path), str(path))
     if wall is None:
         raise_faults(before, str(path))
@@ -192,13 +201,7 @@ def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, fo
     from reports.drawing.figures import show_window
     from reports.drawing.wall_check_figure import draw_inspected, inspected_figure
 
-    if Path(case).is_file():
-        looked = _looked_at(Path(case))
-    else:
-        (found,) = find_cases([case], None, folders)
-        looked = inspect(found.wall, found.id)
-        for note in found.notes:
-            say(f"drystone: {note}", err=True)
+    looked = _looked_at(case, folders)
     for sentence in looked.sentences(advised(looked)):
         say(f"drystone: {sentence}", err=True)
     if window:

@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from drystone.cli.main import main
 from harness.engine.sensitivity import Plateau, suggested
 from harness.model.build import build
+from harness.model.case import shipped_cases
 from harness.model.wall import Wall
 from tests.walls import PUSH, running_bond, wall_data
 
@@ -170,3 +171,13 @@ def test_wall_with_load_cases_has_a_table_under_the_first_of_them(tmp_path: Path
     assert (told["tolerances"] == plain["tolerances"]) is (named == "load_cases")
     run = CliRunner().invoke(main, ["validate", str(tmp_path / "wall.json")])
     assert f"the answers are those of the load case push{'-1' * (named == 'travelling')}\n" in run.stdout
+
+
+def test_a_case_is_looked_over_as_its_wall_file_is():
+    folder = shipped_cases() / "topple"
+    told = [CliRunner().invoke(main, ["validate", str(word)]) for word in ("topple", folder, folder / "wall.json")]
+    assert [run.exit_code for run in told] == [0, 0, 0]
+    assert told[0].stdout == told[1].stdout == told[2].stdout
+    unknown = CliRunner().invoke(main, ["validate", "toppel"])
+    assert (unknown.exit_code, unknown.stdout) == (2, "")
+    assert 'no case is called "toppel"' in unknown.stderr
