@@ -1,4 +1,4 @@
-"""The reaction of supports against the displacement that is imposed on them, by gap springs, judged at its end."""
+"""The reaction of supports against the displacement that is imposed on them, judged at its end."""
 
 from __future__ import annotations
 
@@ -95,18 +95,27 @@ class ReactionPath:
         }
 
 
-def reaction_paths(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple[ReactionPath, ReactionPath] | str:
-    """The paths of supports that give way and of supports that push, by the gap springs of `fe`; or why there are none.
+FOLLOWS = ("fe", "de-soft")
+"""Methods that follow supports: by gap springs in small displacements, by deformable joints at rest after rest."""
+_PATHS = dict(zip(FOLLOWS, ("fe-reaction", "de-reaction"), strict=True))
+"""The methods of their paths."""
+
+
+def reaction_paths(
+    wall: Wall, by: str = "fe", *, runs: Runs = Runs(), **settings: Any
+) -> tuple[ReactionPath, ReactionPath] | str:
+    """The paths of supports that give way and of supports that push, or why there are none.
 
     Args:
         wall: with settlements; its live load does not act.
+        by: "fe", the gap springs, or "de-soft", distinct elements with deformable joints.
         runs: how they are made.
-        settings: of the springs, as of `fe`.
+        settings: of that method.
 
     Raises:
-        InputError: no support with a joint moves, or the wall has joints or bars that `fe` does not take.
+        InputError: no support with a joint moves, or the wall has joints or bars that the method does not take.
     """
-    assembly, method = wall.assembly, load_method("fe")
+    assembly, method = wall.assembly, load_method(by)
     if len(assembly.bars):
         raise InputError(
             "the path takes no ties, props and passive fill", "Ask for the two reactions alone, or leave them out"
@@ -119,7 +128,7 @@ def reaction_paths(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple
     found: list[ReactionPath] = []
     for gives_way in (True, False):
         word = partial(_word, gives_way=gives_way, extremes=ends)
-        result = runs.result(wall.case, "fe-reaction", settings | {"gives_way": gives_way}, word)
+        result = runs.result(wall.case, _PATHS[by], settings | {"gives_way": gives_way}, word)
         path = SupportPath.of(result.details)
         if path is None:
             return result.sentence

@@ -22,6 +22,7 @@ from drystone.cli.options import (
     write_output,
 )
 from drystone.reactions import least_known_reactions, reaction_unit, reactions
+from drystone.support_paths import FOLLOWS
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
@@ -52,6 +53,9 @@ SAID = {
     "--path", "as_path", is_flag=True, help="The reaction against the imposed displacement, by the gap springs of `fe`."
 )
 @click.option(
+    "--by", type=click.Choice(FOLLOWS), help="With --path: by `fe`, or by distinct elements with deformable joints."
+)
+@click.option(
     "--until-collapse", is_flag=True, help="How far the supports can move before the wall falls, on updated geometry."
 )
 @click.option(
@@ -66,6 +70,7 @@ def reaction(
     without_dilatancy: bool,
     held: bool,
     as_path: bool,
+    by: str | None,
     until_collapse: bool,
     output: Path | None,
     as_json: bool,
@@ -83,6 +88,8 @@ def reaction(
         raise InputError(
             "they are different questions", "Give one of --without-dilatancy, --held, --path, --until-collapse"
         )
+    if by is not None and not as_path:
+        raise InputError("only paths are followed by a method of choice", "Give --path with it", "--by")
     if output is not None and not (as_path or until_collapse):
         raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
     check_table_or_figure(output)
@@ -90,7 +97,7 @@ def reaction(
     warn(found)
     wall = Wall(found)
     if as_path:
-        _print_paths(wall, runs, output, as_json)
+        _print_paths(wall, by, runs, output, as_json)
     elif until_collapse:
         _print_collapse(wall, runs, output, as_json)
     elif held:
@@ -136,11 +143,11 @@ def _print_held(wall: Wall, runs: Runs, as_json: bool) -> None:
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 
-def _print_paths(wall: Wall, runs: Runs, output: Path | None, as_json: bool) -> None:
+def _print_paths(wall: Wall, by: str | None, runs: Runs, output: Path | None, as_json: bool) -> None:
     """The paths of a support that gives way and of one that pushes."""
-    from drystone.support_paths import paths_as_csv, paths_figure, reaction_paths
+    from drystone.support_paths import FOLLOWS, paths_as_csv, paths_figure, reaction_paths
 
-    answer = reaction_paths(wall, runs=runs)
+    answer = reaction_paths(wall, by or FOLLOWS[0], runs=runs)
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
         _print_none(answer, names, as_json)

@@ -11,20 +11,18 @@ from __future__ import annotations
 import numpy as np
 
 from harness.engine.crushing import block_power
-from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.assembly import Assembly, FloatArray
 
 
-def borne_by_friction(
-    assembly: Assembly, compression: FloatArray, joints: slice | IntArray = slice(None)
-) -> FloatArray:
-    """(m,) shear that friction of these joints bears at compressions (m,) [force]."""
-    return np.asarray(assembly.friction[joints] * compression)
+def borne_by_friction(friction: FloatArray, compression: FloatArray) -> FloatArray:
+    """(m,) shear that friction (m,) bears at compressions (m,) [force]."""
+    return np.asarray(friction * compression)
 
 
 def slacks(assembly: Assembly, forces: FloatArray) -> FloatArray:
     """(m, 4) what forces (m, 3) leave of the tension at both ends and of the shear both ways, negative beyond yield."""
     normal, shear = forces[:, :2], forces[:, 2]
-    borne = borne_by_friction(assembly, normal.sum(axis=1))
+    borne = borne_by_friction(assembly.friction, normal.sum(axis=1))
     tension, cohesion = own_strength(assembly)
     return np.column_stack([normal + tension, borne + shear + cohesion[:, 0], borne - shear + cohesion[:, 1]])
 
@@ -47,7 +45,7 @@ def beyond_lift(assembly: Assembly, opening: FloatArray, slip: FloatArray, flow:
 def dissipated_by_friction(assembly: Assembly, forces: FloatArray, slip: FloatArray, flow: str = "associated") -> float:
     """Power that friction takes on slips (m,) under forces (m, 3), less what the lift gives back [force x velocity]."""
     compression = forces[:, :2].sum(axis=1)
-    borne = borne_by_friction(assembly, compression)
+    borne = borne_by_friction(assembly.friction, compression)
     return float((borne * abs(slip) - compression * lift(assembly, slip, flow)).sum())
 
 

@@ -143,7 +143,7 @@ def displaced_residuals(assembly: Assembly, state: DisplacedState, multiplier: f
     balance[:, 2] /= assembly.length_scale
     normal = (state.force * state.normal).sum(axis=1)
     shear = abs(state.force[:, 1] * state.normal[:, 0] - state.force[:, 0] * state.normal[:, 1])
-    excess = shear - borne_by_friction(assembly, normal, state.interface)
+    excess = shear - borne_by_friction(assembly.friction[state.interface], normal)
     violation = np.maximum(0.0, np.maximum(-normal, excess)) / between(assembly, loads)[state.interface]
     return {
         "equilibrium": float((abs(balance).max(axis=1) / loads)[assembly.free].max(initial=0.0)),

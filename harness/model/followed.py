@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.method import Answer, Finding, Status
 
 
 class InDetails:
@@ -82,6 +83,21 @@ class SupportPath(InDetails):
     mechanism: FloatArray | None
     constant_from: float | None
     reason: str
+
+
+def path_answer(found: SupportPath | str) -> Answer:
+    """The answer that has a path in its details and the forces at its end; or why there is no path."""
+    if isinstance(found, str):
+        return Answer(Status.NOT_CONVERGED, Finding.NONE, found)
+    return Answer(
+        Status.NOT_CONVERGED if found.reason else Status.OK,
+        Finding.STANDS,
+        found.reason or f"The reaction is constant at {found.reaction[-1]:.7g}.",
+        forces=found.forces,
+        forces_multiplier=0.0,
+        path={"displacement": found.displacement.tolist(), "reaction": found.reaction.tolist()},
+        details=found.as_details(),
+    )
 
 
 @dataclass(frozen=True, eq=False)

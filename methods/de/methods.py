@@ -8,6 +8,7 @@ from methods.de.settings import (
     ClosedSettings,
     MujocoSettings,
     ReleaseSettings,
+    SoftPathSettings,
     SoftSettings,
     SweepSettings,
     TimeHistorySettings,
@@ -158,3 +159,14 @@ DE_TIME = Listed(
     traits=Traits(),
 )
 """A wall on ground that accelerates, for `drystone shake`."""
+
+DE_REACTION = Listed(
+    name="de-reaction",
+    family="de",
+    title="distinct elements, reaction against displacement",
+    solver="methods.de.support_path:ReactionPaths",
+    Settings=SoftPathSettings,
+    tolerance=5e-3,  # forces and mechanism are those of a wall that has moved; `de` states .5 % of its brackets
+    traits=Traits(any_settlements=True),
+)
+"""The reaction against the displacement of supports, for `drystone reaction --path --by de-soft`."""

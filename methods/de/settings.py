@@ -229,6 +229,16 @@ class TimeSteps(Settings):
     after: float = 60.0
 
 
+class SoftPathSettings(SoftSettings):
+    """Settings of `de-reaction`: those of the joints.
+
+    Attributes:
+        gives_way: whether the supports move as prescribed; else they push, backwards.
+    """
+
+    gives_way: bool = True
+
+
 class TimeHistorySettings(TimeSteps):
     """Settings of `de-time`.
 

@@ -28,7 +28,7 @@ from methods.numerics.claims import at_limit, with_proof
 
 BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
-_STIFFNESS = 1e6
+STIFFNESS = 1e6
 """Of joints where none is given, in mean dead loads of a block over the square of the length scale: as good as rigid on
 low walls."""
 
@@ -149,7 +149,7 @@ class DeformableJoints(Solver):
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
         mean = assembly.force_scale / assembly.n_free
-        stiffness = settings.stiffness or _STIFFNESS * mean / assembly.length_scale**2
+        stiffness = settings.stiffness or STIFFNESS * mean / assembly.length_scale**2
         answer = self._with_joints(assembly, settings, stiffness, ROUNDING * assembly.length_scale)
         factor = _too_soft(answer, settings)
         if settings.stiffness is None and factor > 1.0 and not answer.details.get("stopped_by_limit"):

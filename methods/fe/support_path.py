@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.followed import SupportPath
-from harness.model.method import Answer, Finding, Solver, Status
+from harness.model.followed import SupportPath, path_answer
+from harness.model.method import Answer, Solver
 from harness.model.result import fastest_vertex
 from methods.fe.settings import GapSpringsSettings, SupportPathSettings
 from methods.springs.model.factor import Factor, SingularTangent, make_factor, refactor_any
@@ -264,15 +264,4 @@ class ReactionPaths(Solver):
 
     def solve(self, assembly: Assembly, settings: SupportPathSettings) -> Answer:
         """The path, as details; the forces are those at its end."""
-        found = support_path(assembly, settings.gives_way, settings)
-        if isinstance(found, str):
-            return Answer(Status.NOT_CONVERGED, Finding.NONE, found)
-        return Answer(
-            Status.NOT_CONVERGED if found.reason else Status.OK,
-            Finding.STANDS,
-            found.reason or f"The reaction is constant at {found.reaction[-1]:.7g}.",
-            forces=found.forces,
-            forces_multiplier=0.0,
-            path={"displacement": found.displacement.tolist(), "reaction": found.reaction.tolist()},
-            details=found.as_details(),
-        )
+        return path_answer(support_path(assembly, settings.gives_way, settings))

@@ -99,7 +99,7 @@ def test_search_for_the_least_shaking_ends_with_the_first_run_that_is_cut_off():
 
 def test_users_name_no_method_of_a_command():
     names = {point.name for point in method_points() if point.group == OF_COMMANDS}
-    assert names == {"la-reaction", "la-settling", "la-capacity", "fe-reaction", "de-time"}
+    assert names == {"la-reaction", "la-settling", "la-capacity", "fe-reaction", "de-reaction", "de-time"}
     assert not names & set(method_names())
     done = command("run", "la-reaction", "single-block")
     assert (done.returncode, done.stdout) == (2, "")

@@ -27,6 +27,9 @@ from methods.de.engines.edges import SAME, edge_of
 from methods.numerics.compiled import compiled
 from methods.numerics.joint_loops import shear_within
 
+SLIPS = 1e-2
+"""Share of the friction that a contact may lack to count as one that slips: blocks swing back as they come to rest."""
+
 
 @dataclass(frozen=True)
 class ExplicitTuning:
@@ -186,6 +189,13 @@ class SoftWall:
             worst = _advance(*arrays, wall.length_scale, some, options.time_step, options.damping)
         return float(worst) / self._unit
 
+    def carry(self, motion: FloatArray, steps: int) -> None:
+        """Carry the fixed blocks through a motion (n, 3) at constant velocity in so many time steps; then they rest."""
+        fixed = self.assembly.fixed
+        self._velocity[fixed] = motion[fixed] / (steps * self._options.time_step)
+        self.advance(steps)
+        self._velocity[fixed] = 0.0
+
     def state(self) -> DisplacedState:
         """The contacts and their forces as the wall is."""
         contacts, centroid = self.contacts, self.assembly.centroid
@@ -232,6 +242,13 @@ class SoftWall:
         force = (sign * now.force).reshape(-1, 2, 2)
         normal = np.sum(force * wall.normal[:, None], axis=2)
         return np.column_stack([normal, np.sum(force.sum(axis=1) * wall.tangent, axis=1)])
+
+    def slipping_and_open(self) -> tuple[int, int]:
+        """Numbers of contacts that slip, and of contacts that bear nothing."""
+        now, contacts = self.state(), self.contacts
+        pressed = (now.force * now.normal).sum(axis=1)
+        slips = (pressed > 0.0) & (abs(self.shear) >= (1.0 - SLIPS) * contacts.friction * pressed)
+        return int(np.count_nonzero(slips)), int(np.count_nonzero(pressed <= 0.0))
 
     def save(self) -> tuple[FloatArray, FloatArray]:
         """Places and shears, to be given to `restore`."""
@@ -345,6 +362,8 @@ def _advance(
         worst = 0.0
         for i in range(n):
             if mass[i, 0] == np.inf:
+                for j in range(3):
+                    places[i, j] += time_step * velocity[i, j]
                 continue
             for j in range(3):
                 force = out[i, j]
