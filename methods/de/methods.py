@@ -164,7 +164,7 @@ DE_REACTION = Listed(
     name="de-reaction",
     family="de",
     title="distinct elements, reaction against displacement",
-    solver="methods.de.support_path:ReactionPaths",
+    solver="methods.de.support_path:CarriedSupports",
     Settings=SoftPathSettings,
     tolerance=5e-3,  # forces and mechanism are those of a wall that has moved; `de` states .5 % of its brackets
     traits=Traits(any_settlements=True),

@@ -26,7 +26,7 @@ NO_REST = "The wall with deformable joints does not come to rest under its dead 
 
 
 @dataclass(frozen=True)
-class SupportSteps:
+class CarriedSteps:
     """Steps of the supports.
 
     Attributes:
@@ -49,7 +49,7 @@ class SupportSteps:
 
 
 def support_path(
-    assembly: Assembly, gives_way: bool, settings: SoftSettings, steps: SupportSteps = SupportSteps()
+    assembly: Assembly, gives_way: bool, settings: SoftSettings, steps: CarriedSteps = CarriedSteps()
 ) -> SupportPath | str:
     """Carry the supports from rest under the dead load until the reaction is constant.
 
@@ -121,7 +121,7 @@ class _Path:
         self._places.append(wall.places.copy())
         return True
 
-    def constant_from(self, steps: SupportSteps) -> float | None:
+    def constant_from(self, steps: CarriedSteps) -> float | None:
         """Displacement from which the reaction has been constant for long enough; None where it is not."""
         far = np.array(self.displacement)
         change = abs(np.array(self._reaction) - self._reaction[-1])
@@ -154,7 +154,7 @@ class _Path:
         )
 
 
-class ReactionPaths(Solver):
+class CarriedSupports(Solver):
     """The reaction of supports against the displacement that is imposed on them (`de-reaction`)."""
 
     def solve(self, assembly: Assembly, settings: SoftPathSettings) -> Answer:
