@@ -28,7 +28,8 @@ def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> t
         multiplier: scaled multiplier they belong to.
     """
     m = problem.n_interfaces
-    slacks = sp.hstack([block_diagonal(problem.law.rows), sp.csr_matrix((4 * m, 1))])
+    rows = block_diagonal(problem.law.rows)
+    slacks = sp.hstack([rows, sp.csr_matrix((rows.shape[0], 1))])
     equilibrium = sp.hstack([problem.statics, sp.csr_matrix(problem.live[:, None])])
     target = np.append(forces.ravel(), multiplier)
     weight = np.append(np.ones(3 * m), float(m))
@@ -37,8 +38,8 @@ def project_forces(problem: Problem, forces: FloatArray, multiplier: float) -> t
         P=sp.diags(weight).tocsc(),
         q=-weight * target,
         A=sp.csc_matrix(sp.vstack([equilibrium, slacks])),
-        l=np.append(-problem.dead, np.zeros(4 * m)),
-        u=np.append(-problem.dead, np.full(4 * m, np.inf)),
+        l=np.append(-problem.dead, np.zeros(rows.shape[0])),
+        u=np.append(-problem.dead, np.full(rows.shape[0], np.inf)),
         eps_abs=1e-8,
         eps_rel=1e-8,
         max_iter=20000,
