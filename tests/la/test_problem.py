@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from harness.model.assembly import FloatArray
+from harness.model.joint_law import JointLaw
 from methods.la.core.newton_matrix import NewtonMatrix, dissection_order
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.programmes import KinematicProgramme, StaticProgramme
@@ -184,6 +186,34 @@ def test_a_mechanism_of_least_cost_moves_in_the_contacts_allowed_alone() -> None
     assert found.rates[~slide] == pytest.approx(0.0, abs=1e-12)
     assert found.rates[slide] == pytest.approx(found.rates[0, way])
     assert problem.rates_of_velocities(found.velocities, False) == pytest.approx(found.rates, abs=1e-12)
+
+
+class _Capped(JointLaw):
+    """Associated Coulomb friction beside a cap on shear whatever N: two more rows, cap + s and cap - s."""
+
+    @property
+    def rows(self) -> FloatArray:
+        cap = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+        return np.concatenate([super().rows, np.broadcast_to(cap, (len(self.friction), 2, 3))], axis=1)
+
+    @property
+    def flow(self) -> FloatArray:
+        return np.asarray(self.rows.transpose(0, 2, 1))
+
+
+@pytest.mark.parametrize(("cap", "multiplier"), [(0.2, 0.2), (0.45, 0.45), (0.55, 0.5), (2.0, 0.5)])
+def test_the_least_work_of_a_law_of_six_rows_is_the_multiplier_of_a_block_whose_shear_is_capped(
+    cap: float, multiplier: float
+) -> None:
+    # Weight 1, friction .5: it slides at the least of cap / W and mu; it would topple at 5. The work of the slacks that
+    # the dead load leaves, (S r + s0) . g = s0 . g - f0 . u, is the multiplier of the mechanism.
+    problem = make_problem(column([1.0], [0.2], 0.5))
+    law = _Capped(problem.friction, problem.friction)
+    slack = np.einsum("pij,pj->pi", law.rows, [[0.5, 0.5, 0.0]]) + np.array([0.0, 0.0, 0.0, 0.0, cap, cap])
+    found = KinematicProgramme(replace(problem, law=law)).solve(np.ones((1, 6), dtype=bool), slack)
+    assert found is not None
+    assert float((slack * found.rates).sum()) / problem.live_work == pytest.approx(multiplier)
+    assert found.rates[:, 4:].any() == (cap < 0.5)
 
 
 class _Sized:

@@ -150,22 +150,23 @@ class KinematicProgramme:
         self.problem = problem
         m, n = problem.n_interfaces, problem.n_velocities
         flow = block_diagonal(problem.flow_law(associated).flow)
-        live = sp.hstack([sp.csr_matrix(problem.live[None, :]), sp.csr_matrix((1, 4 * m))])
+        rates = flow.shape[1]
+        live = sp.hstack([sp.csr_matrix(problem.live[None, :]), sp.csr_matrix((1, rates))])
         right = np.append(np.zeros(3 * m), problem.live_work)
         self._n = n
         self._programme = Programme(
             sp.csc_matrix(sp.vstack([sp.hstack([problem.kinematic, -flow]), live])),
-            np.zeros(n + 4 * m),
-            (np.append(np.full(n, -INFINITY), np.zeros(4 * m)), np.full(n + 4 * m, INFINITY)),
+            np.zeros(n + rates),
+            (np.append(np.full(n, -INFINITY), np.zeros(rates)), np.full(n + rates, INFINITY)),
             (right, right),
         )
 
     def solve(self, allowed: BoolArray, cost: FloatArray) -> KinematicSolution | None:
-        """The mechanism of least cost (m, 4) in the allowed contacts (m, 4), or None if there is none."""
+        """The mechanism of least cost (m, k) in the allowed contacts (m, k), k rows a joint; None without any."""
         upper = np.where(allowed.ravel(), INFINITY, 0.0)
         self._programme.set_columns(self._n, np.zeros(len(upper)), upper)
         self._programme.set_costs(self._n, cost.ravel())
         status, value, _ = self._programme.run()
         if status != "optimal":
             return None
-        return KinematicSolution(value[: self._n], value[self._n :].reshape(-1, 4))
+        return KinematicSolution(value[: self._n], value[self._n :].reshape(allowed.shape))
