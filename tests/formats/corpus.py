@@ -40,7 +40,7 @@ def door_under_rowlock() -> Wall:
     blocks = []
     for block in plain.blocks:
         shape = shapely.Polygon(block.polygon)
-        left = shape if block.fixed else shape.difference(hole)
+        left = shape if block.fixed else shapely.difference(shape, hole, grid_size=1e-9)  # no spurs by rounding
         for number, part in enumerate(shapely.get_parts(left)):
             if part.geom_type == "Polygon" and part.area > 0.5 * 0.125 * 0.075:  # masons leave smaller bats out
                 ring = [tuple(point) for point in part.exterior.coords[:-1]]

@@ -31,7 +31,7 @@ def outcome(path: Path) -> tuple[str, float]:
         said = str(error)
     read = time.process_time()
     try:
-        seen = f"{len(_looked_at(path).marks)} marks"
+        seen = f"{len(_looked_at(str(path), ()).marks)} marks"
     except InputError as error:
         seen = str(error)
     return f"{said}\n{seen}", max(read - began, time.process_time() - read)
