@@ -11,7 +11,7 @@ from typing import Any
 
 from harness.engine.run import Limits, Run
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
-from harness.model.errors import InputError, did_you_mean
+from harness.model.errors import InputError, did_you_mean, in_file
 from harness.model.json_text import MOST_SHOWN
 from harness.model.library import library
 from harness.model.method import Method
@@ -121,9 +121,9 @@ def check_taken(method: Method, case: Case, option: str = "") -> None:
         InputError: naming the file, what is not taken, and the methods that take it.
     """
     try:
-        check_takes(method, case.assembly)
+        with in_file(case.origin):
+            check_takes(method, case.assembly)
     except InputError as error:
-        error.source = error.source or case.origin
         able = takers(case, listed_methods()) if option else []
         error.remedy += f". The wall as it is: {option} {able[0]}" if able else ""
         raise

@@ -21,7 +21,7 @@ from harness.formats.drawing import LINES, Asked, Drawing, Outline
 from harness.formats.places import across, down_of, refuse_degrees, refuse_frame
 from harness.formats.registry import format_read
 from harness.model.assembly import FloatArray
-from harness.model.errors import InputError, first_few
+from harness.model.errors import InputError, first_few, in_file
 from harness.model.fields import Coefficient, Name, NonNegative, Point, Positive, Strict
 from harness.model.friction_fields import FrictionRule
 from harness.model.json_text import read_toml
@@ -133,11 +133,8 @@ def import_drawing(path: Path, mapping: Mapping | None = None) -> Imported:
         InputError: naming the file, what is wrong and what would be right.
     """
     chosen = mapping_beside(path) if mapping is None else mapping
-    try:
+    with in_file(str(path)):
         return _imported(path, chosen, _read(path, chosen))
-    except InputError as error:
-        error.source = error.source or str(path)
-        raise
 
 
 def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.content import hash_of
-from harness.model.errors import InputError
+from harness.model.errors import InputError, in_file
 from harness.model.fields import Strict
 from harness.model.json_text import read_json, read_toml
 from harness.model.method_registry import method_names
@@ -127,11 +127,8 @@ class Case:
     @cached_property
     def built(self) -> Built:
         """The wall's assembly, explicit form and warnings."""
-        try:
+        with in_file(self.origin):
             return build(self.wall, self.file.id)
-        except InputError as error:
-            error.source = error.source or self.origin
-            raise
 
     @property
     def assembly(self) -> Assembly:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
@@ -160,6 +161,20 @@ def raise_faults(faults: Sequence[InputError], source: str = "", more: int = 0) 
         raise faults[0]
     if faults:
         raise InputFaults(faults, source, more)
+
+
+@contextmanager
+def in_file(source: str) -> Iterator[None]:
+    """Errors within are about this file, but those that name another.
+
+    Raises:
+        InputError: that was raised within, with its file.
+    """
+    try:
+        yield
+    except InputError as error:
+        error.source = error.source or source
+        raise
 
 
 def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:

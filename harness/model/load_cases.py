@@ -13,7 +13,7 @@ from typing import Any
 from harness.model.blocks import blocks_of_wall, polygons_of
 from harness.model.build import Built, build
 from harness.model.case import Case
-from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, raise_faults
+from harness.model.errors import MOST_NAMED, InputError, did_you_mean, first_few, in_file, raise_faults
 from harness.model.laid import Laid, lay
 from harness.model.load_fields import DEAD, Load, Loads
 from harness.model.loads import times, together
@@ -84,11 +84,8 @@ def named_loads_of(case: Case) -> dict[str, NamedLoads]:
     Raises:
         InputError: as `named_loads`, with the file.
     """
-    try:
+    with in_file(case.origin):
         return named_loads(case.wall)
-    except InputError as error:
-        error.source = error.source or case.origin
-        raise
 
 
 def _count(loads: Loads) -> int:
@@ -240,13 +237,10 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
     """
     if name is None and not case.wall.load_case_fields:
         return [case]
-    try:
+    with in_file(case.origin):
         known = named_loads(case.wall)
         wanted = {each: f"{case.id}-{each}" for each in (known if name is None else [name])}
         return [_one(case, each, wall, built) for each, wall, built in each_built(case.wall, wanted, known)]
-    except InputError as error:
-        error.source = error.source or case.origin
-        raise
 
 
 def title_of_wall(case: Case) -> str:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from harness.model.build import Built, build
-from harness.model.errors import MOST_WORDED, InputError, did_you_mean, raise_faults
+from harness.model.errors import MOST_WORDED, InputError, did_you_mean, in_file, raise_faults
 from harness.model.fields import MOST_BLOCKS, TAGS
 from harness.model.json_text import MOST_SHOWN, read_json
 from harness.model.names import faults_of_data
@@ -210,11 +210,8 @@ def read_wall(path: Path, name: str = "") -> Built:
         InputError: naming the file and the element.
     """
     wall = parse_wall(read_document(path), str(path))
-    try:
+    with in_file(str(path)):
         return build(wall, name or path.stem)
-    except InputError as error:
-        error.source = error.source or str(path)
-        raise
 
 
 def wall_json(wall: Wall) -> str:
