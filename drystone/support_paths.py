@@ -95,10 +95,9 @@ class ReactionPath:
         }
 
 
-FOLLOWS = ("fe", "de-soft")
-"""Methods that follow supports: by gap springs in small displacements, by deformable joints at rest after rest."""
-_PATHS = dict(zip(FOLLOWS, ("fe-reaction", "de-reaction"), strict=True))
-"""The methods of their paths."""
+FOLLOWS = {"fe": "fe-reaction", "de-soft": "de-reaction"}
+"""Methods that follow supports, by gap springs in small displacements and by deformable joints at rest after rest, and
+those that give their paths."""
 
 
 def reaction_paths(
@@ -128,7 +127,7 @@ def reaction_paths(
     found: list[ReactionPath] = []
     for gives_way in (True, False):
         word = partial(_word, gives_way=gives_way, extremes=ends)
-        result = runs.result(wall.case, _PATHS[by], settings | {"gives_way": gives_way}, word)
+        result = runs.result(wall.case, FOLLOWS[by], settings | {"gives_way": gives_way}, word)
         path = SupportPath.of(result.details)
         if path is None:
             return result.sentence

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 import drystone
+from drystone.support_paths import ReactionPath
 
 
 def semicircle(thickness: float, voussoirs: int, friction: float) -> drystone.Wall:
@@ -69,3 +70,18 @@ def segmental(friction: float, *settlements: dict[str, Any], origin: tuple[float
 def weight(wall: drystone.Wall) -> float:
     """Of the free blocks."""
     return float(wall.assembly.weight[wall.assembly.free].sum())
+
+
+def both(found: tuple[ReactionPath, ReactionPath] | str) -> tuple[ReactionPath, ReactionPath]:
+    """Two paths that the judge accepts, from no displacement on."""
+    assert not isinstance(found, str), found
+    for each in found:
+        assert each.accepted, each.sentence
+        assert each.displacement[0] == 0.0
+        assert np.all(np.diff(each.displacement) > 0.0)
+    return found
+
+
+def values(found: tuple[ReactionPath, ReactionPath]) -> list[float]:
+    """The constant reactions."""
+    return [float(each.reaction[-1]) for each in found]

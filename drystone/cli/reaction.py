@@ -22,7 +22,7 @@ from drystone.cli.options import (
     write_output,
 )
 from drystone.reactions import least_known_reactions, reaction_unit, reactions
-from drystone.support_paths import FOLLOWS
+from drystone.support_paths import FOLLOWS, paths_as_csv, paths_figure, reaction_paths
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
@@ -53,7 +53,9 @@ SAID = {
     "--path", "as_path", is_flag=True, help="The reaction against the imposed displacement, by the gap springs of `fe`."
 )
 @click.option(
-    "--by", type=click.Choice(FOLLOWS), help="With --path: by `fe`, or by distinct elements with deformable joints."
+    "--by",
+    type=click.Choice(list(FOLLOWS)),
+    help="With --path: by `fe`, or by distinct elements with deformable joints.",
 )
 @click.option(
     "--until-collapse", is_flag=True, help="How far the supports can move before the wall falls, on updated geometry."
@@ -145,9 +147,7 @@ def _print_held(wall: Wall, runs: Runs, as_json: bool) -> None:
 
 def _print_paths(wall: Wall, by: str | None, runs: Runs, output: Path | None, as_json: bool) -> None:
     """The paths of a support that gives way and of one that pushes."""
-    from drystone.support_paths import FOLLOWS, paths_as_csv, paths_figure, reaction_paths
-
-    answer = reaction_paths(wall, by or FOLLOWS[0], runs=runs)
+    answer = reaction_paths(wall, by or "fe", runs=runs)
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
         _print_none(answer, names, as_json)

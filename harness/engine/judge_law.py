@@ -59,9 +59,8 @@ def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatA
         slip: (m,) slips.
     """
     tension, cohesion = own_strength(assembly)
-    ways = np.maximum(np.column_stack([slip, -slip]), 0.0)
+    ways, crushed = np.maximum(np.column_stack([slip, -slip]), 0.0), 0.0
     if assembly.crushes:
         tension = np.where(np.isfinite(assembly.crushing)[:, None], 0.0, tension)
         crushed = float(block_power(assembly, opening).sum())
-        return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum()) + crushed
-    return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum())
+    return float((tension * np.maximum(opening, 0.0)).sum() + (cohesion * ways).sum()) + crushed

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import drystone
-from drystone.support_paths import ReactionPath, reaction_paths
+from drystone.support_paths import reaction_paths
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.errors import InputError
 from harness.model.followed import SupportPath
@@ -18,25 +18,12 @@ from methods.de.settings import SoftSettings
 from methods.de.support_path import NO_REST, CarriedSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
-from tests.moving_supports import BRICKS, bricks, semicircle, tilted, weight
+from tests.moving_supports import BRICKS, both, bricks, semicircle, tilted, values, weight
 
 MOVED = 2e-4
 """Share of the weight by which displacements and rounded corners change a reaction: the arches have 5e-5."""
 HISTORY = 4e-3
 """Share of a reaction by which the speed of the supports changes it where bricks slide: they have up to 2e-3."""
-
-
-def both(found: tuple[ReactionPath, ReactionPath] | str) -> tuple[ReactionPath, ReactionPath]:
-    assert not isinstance(found, str), found
-    for each in found:
-        assert each.accepted, each.sentence
-        assert each.displacement[0] == 0.0
-        assert np.all(np.diff(each.displacement) > 0.0)
-    return found
-
-
-def values(found: tuple[ReactionPath, ReactionPath]) -> list[float]:
-    return [float(each.reaction[-1]) for each in found]
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -11,7 +11,7 @@ import pytest
 
 import drystone
 from drystone.reactions import reactions
-from drystone.support_paths import ReactionPath, paths_as_csv, reaction_paths
+from drystone.support_paths import paths_as_csv, reaction_paths
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.errors import InputError
 from harness.model.followed import SupportPath
@@ -19,7 +19,7 @@ from methods.fe.settings import GapSpringsSettings
 from methods.fe.support_path import SupportSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
-from tests.moving_supports import BRICKS, bricks, segmental, semicircle, weight
+from tests.moving_supports import BRICKS, both, bricks, segmental, semicircle, values, weight
 
 EXACT = 1e-8
 """Relative accuracy that `fe` declares of a plateau."""
@@ -29,19 +29,6 @@ DIGITS = 2e-7
 
 SHARES = (0.0, 0.4)
 """Of the friction, by which slips lift."""
-
-
-def both(found: tuple[ReactionPath, ReactionPath] | str) -> tuple[ReactionPath, ReactionPath]:
-    assert not isinstance(found, str), found
-    for each in found:
-        assert each.accepted, each.sentence
-        assert each.displacement[0] == 0.0
-        assert np.all(np.diff(each.displacement) > 0.0)
-    return found
-
-
-def values(found: tuple[ReactionPath, ReactionPath]) -> list[float]:
-    return [float(each.reaction[-1]) for each in found]
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -119,9 +119,13 @@ class WallModel:
         """Tensions of ties and props beyond their prestress [force], at trial shears tau (P,)."""
         if self.n_updated == self.n_points:
             return np.empty(0)
-        last = slice(self.n_updated, None)
-        limit = self.law.by_friction(-self.kn * self.initial_opening)[last]
+        last, limit = slice(self.n_updated, None), self._bar_limits
         return self.force * (np.clip(trial[last], -limit, limit) + self.middle[last])
+
+    @cached_property
+    def _bar_limits(self) -> FloatArray:
+        """(k,) shear of the points of ties and props at which they yield either way."""
+        return self.law.by_friction(-self.kn * self.initial_opening)[self.n_updated :]
 
     @cached_property
     def law(self) -> JointLaw:
