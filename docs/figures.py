@@ -214,7 +214,7 @@ def readme_figures(folder: Path) -> None:
     from playwright.sync_api import sync_playwright
 
     import drystone
-    from reports.drawing.figures import figure
+    from reports.figures.figures import figure
 
     wall = drystone.library_wall("wall-21")
     answers: list[Any] = [drystone.analyse(wall, name) for name in ("fe", "la", "de")]

@@ -117,12 +117,12 @@ class Result(Record):
         Raises:
             InputError: an unknown kind, or an answer without the field to draw.
         """
-        from reports.drawing.figures import results_figure
+        from reports.figures.figures import results_figure
 
         return results_figure(self._wall.case, [self], kind)
 
     def _repr_html_(self) -> str:
-        from reports.drawing.figures import html
+        from reports.figures.figures import html
 
         drawn = self.plot() if self.mechanism is not None else None
         return html(f"{self._wall.name}, {self.method}: {self.sentence} ({self.judge.outcome})", drawn)

@@ -208,7 +208,7 @@ class Bench:
 
     def plot(self) -> Figure:
         """Performance profiles, and the height above the least known state over CPU time."""
-        from reports.drawing.profile import profile_figure
+        from reports.figures.profile import profile_figure
 
         return profile_figure(self.profile(), self.complete)
 

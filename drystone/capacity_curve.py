@@ -91,7 +91,7 @@ class CapacityCurve:
 
     def plot(self) -> Figure:
         """The multiplier against the displacement, and the wall where it last bears a load."""
-        from reports.drawing.settling import settled_figure
+        from reports.figures.settling import settled_figure
 
         labels = (f"displacement of {self.control}", "multiplier")
         return settled_figure(self.assembly, self.places[-1], (self.displacement, self.multiplier), labels)

@@ -46,7 +46,7 @@ class Check:
         return pd.DataFrame(self.lines).drop(columns="settings", errors="ignore")
 
     def _repr_html_(self) -> str:
-        from reports.drawing.figures import html
+        from reports.figures.figures import html
 
         shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
         title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references are met"

@@ -73,12 +73,12 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Multipliers of all methods, one group of points a wall, in the colours and marks that the methods name."""
-        from reports.charts.multipliers import multipliers_figure
+        from reports.figures.multipliers import multipliers_figure
 
         return multipliers_figure(self.run)
 
     def _repr_html_(self) -> str:
-        from reports.drawing.figures import html
+        from reports.figures.figures import html
 
         return html(self.run.title, None, str(self.multipliers().to_html(na_rep="-", float_format="{:.6g}".format)))
 

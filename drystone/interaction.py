@@ -243,7 +243,7 @@ class Domain:
 
     def plot(self) -> Figure:
         """A figure of the domain."""
-        from reports.drawing.domain import domain_figure
+        from reports.figures.domain import domain_figure
 
         whole = self.exact and not self.reason
         head = f"{self.method}: " + ("the whole domain" if whole else "points of the boundary")

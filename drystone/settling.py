@@ -95,7 +95,7 @@ class SettledCollapse:
 
     def plot(self) -> Figure:
         """The reaction against the displacement, and the wall where it last stands."""
-        from reports.drawing.settling import settled_figure
+        from reports.figures.settling import settled_figure
 
         return settled_figure(self.assembly, self.places, (self.displacement, self.reaction))
 

@@ -140,7 +140,7 @@ class Shaking:
 
     def plot(self) -> Figure:
         """The displacement of the block that moved furthest against time, and the wall in the end."""
-        from reports.drawing.settling import settled_figure
+        from reports.figures.settling import settled_figure
 
         name, _ = self.furthest
         wall = self.wall.assembly

@@ -107,7 +107,7 @@ class Sweep:
         return target
 
     def _repr_html_(self) -> str:
-        from reports.drawing.figures import html
+        from reports.figures.figures import html
 
         return html(self.study.title, None, str(self.tables["quantiles"].to_html(float_format="{:.6g}".format)))
 

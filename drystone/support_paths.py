@@ -189,7 +189,7 @@ def paths_as_csv(paths: tuple[ReactionPath, ...]) -> str:
 
 def paths_figure(paths: tuple[ReactionPath, ...], head: str) -> Figure:
     """Reaction against displacement of each path, between the extremes of associated flow."""
-    from reports.drawing.settling import reaction_figure
+    from reports.figures.settling import reaction_figure
 
     curves = [
         ("gives way" if path.gives_way else "pushes", path.displacement, path.reaction, path.constant_from)

@@ -85,12 +85,12 @@ class Wall:
 
     def plot(self) -> Figure:
         """A figure of the blocks with their names, joints, supports and loads."""
-        from reports.drawing.figures import wall_figure
+        from reports.figures.figures import wall_figure
 
         return wall_figure(self.case.built, self.title)
 
     def _repr_html_(self) -> str:
-        from reports.drawing.figures import html
+        from reports.figures.figures import html
 
         free, joints = self.assembly.n_free, self.assembly.n_interfaces
         return html(f"{self.title}: {free} free blocks, {joints} interfaces", self.plot())

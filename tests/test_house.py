@@ -144,7 +144,7 @@ def test_shapes_of_a_wall_are_drawn_by_the_display_list_alone():
         for place, node in nodes()
         if (isinstance(node, ast.ImportFrom) and node.module in shapes) or _called(node) == "add_patch"
     }
-    assert by_matplotlib == {"reports/drawing/plot.py"}
+    assert by_matplotlib == {"reports/figures/plot.py"}
     as_svg = {
         place
         for place, node in nodes("reports/drawing", "drystone", "harness", "methods")

@@ -179,7 +179,7 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
     All load cases of the file are analysed. Without them a horizontal live load is analysed both ways, because an
     earthquake comes from either side.
     """
-    from reports.page.appendix import write_appendix
+    from reports.appendix import write_appendix
 
     (named,) = find_cases([wall], None, ())
     title, chosen = named.id, load_cases_of(named)

@@ -198,8 +198,8 @@ def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, fo
 
     A wall with faults is drawn too, with the faults marked under the numbers of `drystone validate`; exit code 2 then.
     """
-    from reports.drawing.figures import show_window
-    from reports.drawing.wall_check_figure import draw_inspected, inspected_figure
+    from reports.figures.figures import show_window
+    from reports.figures.wall_check_figure import draw_inspected, inspected_figure
 
     looked = _looked_at(case, folders)
     for sentence in looked.sentences(advised(looked)):

@@ -274,7 +274,7 @@ def check_table_or_figure(path: Path | None) -> None:
         InputError: naming the endings of figures.
     """
     if path is not None and path.suffix.lower() != TABLE:
-        from reports.drawing.figures import check_ending
+        from reports.figures.figures import check_ending
 
         check_ending(path)
 
@@ -291,6 +291,6 @@ def write_output(path: Path | None, table: Callable[[], str], figure: Callable[[
         with replacing(path) as draft:
             draft.write_text(table(), encoding="utf-8")
         return
-    from reports.drawing.figures import save
+    from reports.figures.figures import save
 
     save(figure, path)

@@ -171,8 +171,8 @@ def figure(
     folders: tuple[Path, ...],
 ) -> None:
     """Draw the answers of methods on CASE as a figure for a paper."""
-    from reports.drawing.figures import check_ending
-    from reports.drawing.figures import figure as draw
+    from reports.figures.figures import check_ending
+    from reports.figures.figures import figure as draw
 
     if output is not None:
         check_ending(output)
@@ -191,8 +191,8 @@ def figure(
 @catching
 def animate(case: str, method: str, output: Path | None, store: Path, folders: tuple[Path, ...]) -> None:
     """Animate the mechanism a method finds on CASE."""
-    from reports.drawing.animate import animate as draw
-    from reports.drawing.animate import check_ending
+    from reports.figures.animate import animate as draw
+    from reports.figures.animate import check_ending
 
     if output is not None:
         check_ending(output)

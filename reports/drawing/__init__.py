@@ -1,1 +1,1 @@
-"""Drawings: display lists of walls, mechanisms and forces, and the SVG and matplotlib back-ends."""
+"""Drawings: display lists of walls, mechanisms and forces, and the SVG of them."""

@@ -2,7 +2,7 @@
 
 Coordinates and sizes are drawing units: the longer side of a wall has 4000 of them, x points right and y down. A role
 says what a part stands for; its colours and widths of lines are in `reports.drawing.looks`. There are two back-ends,
-`reports.drawing.svg` and `reports.drawing.plot`.
+`reports.drawing.svg` and `reports.figures.plot`.
 """
 
 from __future__ import annotations

@@ -117,7 +117,7 @@ def _comparison_figure(item: CaseResults) -> bytes | None:
     ]
     if not usable or shapes.problem(item.case) or item.case.assembly.n_blocks > FIGURE_BLOCKS:
         return None
-    from reports.drawing import figures
+    from reports.figures import figures
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "figure.pdf"

@@ -16,8 +16,8 @@ from harness.model.live_load import reversed_live
 from harness.model.method import Finding
 from harness.model.result import Result
 from harness.model.support_reactions import out_of_balance, support_reactions
+from reports.appendix import render, write_appendix
 from reports.labels.wall_summary import value_in_words
-from reports.page.appendix import render, write_appendix
 from tests.commands import drystone
 from tests.reports import samples
 from tests.walls import assembly, stack

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.result import Verdict
 from reports.charts.charts import WIDTH, Axis, Chart, Plot, Series, thin
-from reports.charts.multipliers import multipliers_figure
 from reports.drawing.display_list import Arrows
+from reports.figures.multipliers import multipliers_figure
 from reports.geometry.shapes import moving
 from reports.page.tables import findings
 from tests.reports import samples

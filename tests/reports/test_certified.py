@@ -20,7 +20,7 @@ from harness.engine.regression import violations
 from harness.engine.store import open_store
 from harness.model.case import read_case, shipped_cases
 from harness.model.comparison import Certified, ComparisonRun
-from reports.page import appendix
+from reports import appendix
 from reports.page.summary import wall_findings, which_number
 from reports.page.tables import run_row
 from tests.commands import drystone as run_command

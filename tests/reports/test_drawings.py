@@ -25,15 +25,15 @@ from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.inspection import inspect
 from harness.model.result import Result
-from reports.drawing import figures
-from reports.drawing.animate import frames
 from reports.drawing.display_list import Frame
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.looks import COLOURS, LOOKS, css
-from reports.drawing.settling import settled_figure
 from reports.drawing.svg import inline
-from reports.drawing.wall_check_figure import inspected_figure
 from reports.drawing.wall_drawing import wall_drawing
+from reports.figures import figures
+from reports.figures.animate import frames
+from reports.figures.settling import settled_figure
+from reports.figures.wall_check_figure import inspected_figure
 from reports.geometry import shapes, thrust_lines
 from reports.page import build
 from reports.page.page_drawings import drawing_bytes, fields_drawn

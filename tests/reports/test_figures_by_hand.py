@@ -15,14 +15,14 @@ from matplotlib.patches import Polygon
 from PIL import Image
 
 from harness.model.comparison import CaseResults, ComparisonRun
-from reports.charts.multipliers import multipliers_figure
-from reports.drawing import animate, figures
 from reports.drawing.display_list import Arrows, Circles, DisplayList, Frame, Lines, Polygons, Text
-from reports.drawing.domain import domain_figure
 from reports.drawing.looks import COLOURS, LOOKS
-from reports.drawing.plot import plot
-from reports.drawing.profile import profile_figure
-from reports.drawing.settling import reaction_figure, settled_figure
+from reports.figures import animate, figures
+from reports.figures.domain import domain_figure
+from reports.figures.multipliers import multipliers_figure
+from reports.figures.plot import plot
+from reports.figures.profile import profile_figure
+from reports.figures.settling import reaction_figure, settled_figure
 from tests.reports import samples
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4

@@ -14,6 +14,7 @@ from harness.model.case import Case
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status, Traits
 from harness.model.result import Verdict
+from reports import appendix
 from reports.charts import curves, dots, families, studies
 from reports.charts.dots import Dot, DotPlot, DotRow
 from reports.charts.styles import SHAPES, Mark, mark_named
@@ -22,7 +23,7 @@ from reports.drawing.looks import LOOKS
 from reports.drawing.wall_drawing import wall_drawing
 from reports.findings.joints import joint_states, open_with_force
 from reports.geometry import shapes, thrust_lines
-from reports.page import appendix, build, glance, page_drawings, sections, study_page, summary, tables, vectors
+from reports.page import build, glance, page_drawings, sections, study_page, summary, tables, vectors
 from reports.page.governing import governing
 from tests.reports import samples
 from tests.walls import case as wall_case

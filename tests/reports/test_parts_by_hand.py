@@ -20,7 +20,7 @@ from reports.charts import charts, curves
 from reports.charts.dots import Above
 from reports.drawing import looks
 from reports.drawing.force_drawing import force_drawing
-from reports.drawing.profile import profile_figure
+from reports.figures.profile import profile_figure
 from reports.page import diff_page, glance, study_page, vectors
 from reports.page.reference_tables import _HELD_CELLS
 from tests.reports import samples

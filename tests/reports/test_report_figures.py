@@ -13,8 +13,8 @@ from PIL import Image
 from harness.model.errors import InputError
 from harness.model.method import Status
 from harness.model.result import Result
-from reports.drawing import figures
-from reports.drawing.animate import FRAMES, animate
+from reports.figures import figures
+from reports.figures.animate import FRAMES, animate
 from reports.geometry import shapes, thrust_lines
 from tests.reports import samples
 from tests.walls import case as wall_case

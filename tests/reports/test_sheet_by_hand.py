@@ -13,9 +13,9 @@ from matplotlib.text import Annotation, Text
 
 from harness.model.inspection import FaultMark, Inspection, inspect
 from harness.model.reading import parse_wall
-from reports.drawing.figures import PAGE
 from reports.drawing.looks import COLOURS, LOOKS
-from reports.drawing.wall_check_figure import Sheet, inspected_figure
+from reports.figures.figures import PAGE
+from reports.figures.wall_check_figure import Sheet, inspected_figure
 
 BRICK = "brick-on-edge"
 

@@ -12,8 +12,8 @@ import drystone
 from harness.formats.exporting import matrices
 from harness.model.build import build
 from harness.model.wall import Wall
+from reports.appendix import assumptions
 from reports.findings.strength import strength_text
-from reports.page.appendix import assumptions
 from tests.commands import drystone as command
 from tests.walls import assembly, case, stack, wall_data
 

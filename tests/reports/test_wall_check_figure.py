@@ -13,7 +13,7 @@ from cases.start import stack
 from drystone.cli.main import main
 from harness.model.inspection import inspect
 from harness.model.salvage import salvaged
-from reports.drawing.wall_check_figure import inspected_figure
+from reports.figures.wall_check_figure import inspected_figure
 from reports.geometry.thrust_lines import round_number
 from tests.engine.test_validate import faulty
 

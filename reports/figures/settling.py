@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.displaced import carried
-from reports.drawing.figures import COLUMN, PAGE, style
 from reports.drawing.looks import COLOURS
-from reports.drawing.plot import plot
 from reports.drawing.wall_drawing import displaced_drawing
+from reports.figures.figures import COLUMN, PAGE, style
+from reports.figures.plot import plot
 
 BEYOND = 1.5
 """Multiple of the displacement from which the last reaction is constant, up to which paths are drawn."""

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from harness.model.comparison import ComparisonRun
 from harness.model.result import Result
 from reports.charts.styles import mark_of
-from reports.drawing.figures import COLUMN, style
 from reports.drawing.looks import COLOURS
+from reports.figures.figures import COLUMN, style
 from reports.labels import labels
 
 _TALLEST = 9.2

@@ -21,8 +21,8 @@ from harness.model.load_cases import title_of_wall
 from harness.model.method import Status
 from harness.model.result import Result
 from harness.model.writing import write_whole
-from reports.drawing.figures import results_figure, style, wall_figure
 from reports.environment import environment
+from reports.figures.figures import results_figure, style, wall_figure
 from reports.findings.strength import strength_text
 from reports.geometry import shapes
 from reports.labels import labels, numbers

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
-from reports.drawing.figures import COLUMN, style
 from reports.drawing.looks import COLOURS
+from reports.figures.figures import COLUMN, style
 
 
 def domain_figure(names: tuple[str, str], head: str, points: FloatArray, ways: FloatArray, *, exact: bool) -> Figure:

@@ -21,10 +21,10 @@ from harness.model.inspection import FaultMark, Inspection
 from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports.drawing.display_list import Arrows, DisplayList, Frame, Polygons
-from reports.drawing.figures import PAGE, save, style
 from reports.drawing.looks import COLOURS, LOOKS
-from reports.drawing.plot import plot
 from reports.drawing.wall_drawing import joint_lines, load_arrows
+from reports.figures.figures import PAGE, save, style
+from reports.figures.plot import plot
 from reports.geometry import shapes
 from reports.geometry.thrust_lines import round_number
 

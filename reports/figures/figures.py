@@ -26,8 +26,8 @@ from reports.drawing.display_list import Box, Frame
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.looks import COLOURS
 from reports.drawing.mechanism_drawing import mechanism_drawing
-from reports.drawing.plot import plot
 from reports.drawing.wall_drawing import plain_wall
+from reports.figures.plot import plot
 from reports.geometry import shapes, thrust_lines
 from reports.labels.wall_summary import friction_text, value_in_words
 

@@ -15,12 +15,12 @@ from harness.model.displaced import carried, released
 from harness.model.errors import InputError
 from harness.model.result import Result
 from harness.model.writing import replacing
-from reports.drawing import figures
 from reports.drawing.display_list import Box, DisplayList, Frame
 from reports.drawing.looks import COLOURS
 from reports.drawing.mechanism_drawing import moved_wall
-from reports.drawing.plot import plot
 from reports.drawing.wall_drawing import displaced_drawing
+from reports.figures import figures
+from reports.figures.plot import plot
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from harness.model.errors import InputError
 from harness.model.method_registry import load_method
-from reports.drawing.figures import PAGE, style
+from reports.figures.figures import PAGE, style
 
 ROUNDING = 1e-12
 """What lies less above the least known state is drawn here."""

@@ -1,0 +1,1 @@
+"""Figures for papers, and of curves: display lists and charts through matplotlib."""
