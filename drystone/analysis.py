@@ -122,9 +122,10 @@ class Result(Record):
         return results_figure(self._wall.case, [self], kind)
 
     def _repr_html_(self) -> str:
-        from reports.figures.figures import html
+        from reports.drawing.mechanism_drawing import mechanism_drawing
+        from reports.notebook import html
 
-        drawn = self.plot() if self.mechanism is not None else None
+        drawn = mechanism_drawing(self._wall.case, self) if self.mechanism is not None else None
         return html(f"{self._wall.name}, {self.method}: {self.sentence} ({self.judge.outcome})", drawn)
 
 

@@ -78,9 +78,9 @@ class Comparison:
         return multipliers_figure(self.run)
 
     def _repr_html_(self) -> str:
-        from reports.figures.figures import html
+        from reports.notebook import html
 
-        return html(self.run.title, None, str(self.multipliers().to_html(na_rep="-", float_format="{:.6g}".format)))
+        return html(self.run.title, table=str(self.multipliers().to_html(na_rep="-", float_format="{:.6g}".format)))
 
 
 def compare(

@@ -20,8 +20,9 @@ from drystone.comparing import compare
 from drystone.walls import Wall, build_wall
 from harness.engine.run import Limits
 from harness.engine.sweep.paths import has_number, setting_of, with_values
-from harness.model.errors import InputError, MissingPackage
+from harness.model.errors import InputError
 from harness.model.method import Finding
+from harness.model.optional import optional
 
 NAME = "drystone"
 """Of the model, by which clients ask for it."""
@@ -121,12 +122,9 @@ def serve(
         MissingPackage: umbridge is not installed.
         InputError: it cannot listen on that port.
     """
-    try:
-        import umbridge
-    except ImportError as error:
-        raise MissingPackage(f"it needs umbridge ({error})", "Install drystone[umbridge]", "gateway") from None
+    umbridge = optional("umbridge", "umbridge", "gateway")
 
-    class Model(umbridge.Model):  # type: ignore[misc]  # no types
+    class Model(umbridge.Model):  # type: ignore[misc, name-defined]  # no types
         def get_input_sizes(self, config: Any) -> list[int]:
             return [len(template.names)]
 

@@ -107,9 +107,9 @@ class Sweep:
         return target
 
     def _repr_html_(self) -> str:
-        from reports.figures.figures import html
+        from reports.notebook import html
 
-        return html(self.study.title, None, str(self.tables["quantiles"].to_html(float_format="{:.6g}".format)))
+        return html(self.study.title, table=str(self.tables["quantiles"].to_html(float_format="{:.6g}".format)))
 
 
 def sweep(

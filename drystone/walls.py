@@ -90,10 +90,11 @@ class Wall:
         return wall_figure(self.case.built, self.title)
 
     def _repr_html_(self) -> str:
-        from reports.figures.figures import html
+        from reports.drawing.wall_drawing import wall_drawing
+        from reports.notebook import html
 
         free, joints = self.assembly.n_free, self.assembly.n_interfaces
-        return html(f"{self.title}: {free} free blocks, {joints} interfaces", self.plot())
+        return html(f"{self.title}: {free} free blocks, {joints} interfaces", wall_drawing(self.case))
 
     def __repr__(self) -> str:
         if named := self.case.wall.load_case_fields:

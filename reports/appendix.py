@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
 from harness.model.bar_forces import bar_forces_of
@@ -22,13 +21,16 @@ from harness.model.method import Status
 from harness.model.result import Result
 from harness.model.writing import write_whole
 from reports.environment import environment
-from reports.figures.figures import results_figure, style, wall_figure
+from reports.figures.figures import results_figure, svg, wall_figure
 from reports.findings.strength import strength_text
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words, wall_summary
 from reports.page.governing import governing
 from reports.page.summary import wall_findings, which_number
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _BLOCK_ROWS = 36
 """Largest number of blocks with a row each; of more only sums are given: the appendix stays within four sheets."""
@@ -180,9 +182,5 @@ def _method_row(result: Result) -> MethodRow:
 
 
 def _svg(figure: Figure) -> Markup:
-    """A figure of ours as an SVG element: letters are drawn as outlines, so that no text of a file becomes markup."""
-    stream = io.StringIO()
-    with style():
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": "Drystone"})
-    text = stream.getvalue()
-    return Markup(text[text.index("<svg") :])
+    """A figure of ours: its letters are drawn as outlines, so that no text of a file becomes markup."""
+    return Markup(svg(figure))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import click
@@ -166,6 +167,8 @@ def report(report: Path, figures: bool, appendix: str | None, store: Path) -> No
     With --appendix, write two to four sheets on one wall beside the report: result, assumptions, loads, drawing,
     reactions, mechanism, forces. What the store does not have is run.
     """
+    if figures:
+        import_module("reports.figures")  # refused before anything is written where matplotlib is missing
     if appendix is not None:
         _appendix(appendix, report.parent, store)
         return

@@ -17,8 +17,8 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline, best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
+from harness.model.optional import optional
 from methods.numerics.claims import at_limit, with_proof
-from methods.numerics.optional import optional
 from methods.numerics.statics import admissible_forces, dilatant_mechanism
 from methods.numerics.vertex import Vertex
 from methods.peers.programme import CollapseProgramme, collapse_programme
@@ -68,7 +68,7 @@ class ProgrammePeer(Solver):
 
     def prepare(self) -> None:
         """Import the package of the peer."""
-        optional(self.package, self.extra, self.name)
+        optional(self.package, self.extra, f"method {self.name}")
 
     @abstractmethod
     def ended(self, package: Any, programme: CollapseProgramme, settings: Any) -> Ended | str:
@@ -80,7 +80,7 @@ class ProgrammePeer(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer for a wall, from the dead load alone where that decides."""
-        package = optional(self.package, self.extra, self.name)
+        package = optional(self.package, self.extra, f"method {self.name}")
         return with_proof(assembly, at_limit(assembly, self._answer(package, assembly, settings)))
 
     def _answer(self, package: Any, assembly: Assembly, settings: Any) -> Answer:

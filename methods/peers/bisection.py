@@ -8,8 +8,8 @@ from typing import Any, Protocol
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
+from harness.model.optional import optional
 from methods.numerics.claims import analysed
-from methods.numerics.optional import optional
 from methods.peers.settings import BisectionSettings
 
 
@@ -67,7 +67,7 @@ class Bisection(Solver):
         Raises:
             InputError: the package is not installed.
         """
-        package = optional(self._module, self._extra, self._method)
+        package = optional(self._module, self._extra, f"method {self._method}")
         return analysed(assembly, lambda part: self._of_component(package, part, settings))
 
     def _of_component(self, package: Any, assembly: Assembly, settings: BisectionSettings) -> Answer:

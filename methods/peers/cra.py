@@ -21,7 +21,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline
-from methods.numerics.optional import optional
+from harness.model.optional import optional
 from methods.peers.bisection import Bisection, Words
 from methods.peers.prisms import prism
 from methods.peers.settings import BisectionSettings, CraSettings
@@ -68,9 +68,9 @@ class Solvable:
     def _extruded(self) -> Any:
         """The wall as blocks one length scale thick; x, y of the wall are x, z of it."""
         wall = self.assembly
-        structures = optional("compas_cra.datastructures", "cra", "cra")
-        block = optional("compas_assembly.datastructures", "cra", "cra").Block
-        frame = optional("compas.geometry", "cra", "cra").Frame
+        structures = optional("compas_cra.datastructures", "cra", "method cra")
+        block = optional("compas_assembly.datastructures", "cra", "method cra").Block
+        frame = optional("compas.geometry", "cra", "method cra").Frame
         result = structures.CRA_Assembly()
         for i, polygon in enumerate(wall.polygons):
             result.add_block(block.from_vertices_and_faces(*prism((polygon - wall.middle) / self._length)), node=i)

@@ -23,8 +23,8 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline, best_so_far
 from harness.model.errors import MissingPackage
 from harness.model.method import Answer, Finding, Solver, Status
+from harness.model.optional import optional
 from methods.numerics.claims import analysed
-from methods.numerics.optional import optional
 from methods.peers.settings import OpenSeesSettings
 
 _CONTACT = "zeroLengthContactASDimplex"
@@ -169,7 +169,7 @@ def _load_opensees() -> Any:
         InputError: it is not installed, or a library that it needs is not.
     """
     try:
-        return optional("openseespy.opensees", "opensees", "opensees")
+        return optional("openseespy.opensees", "opensees", "method opensees")
     except RuntimeError as error:  # what openseespy says where it cannot load a library
         raise MissingPackage(
             "openseespy is installed, but a library that it needs is not", "Install BLAS (Debian: libblas3)", "opensees"

@@ -1,1 +1,5 @@
-"""Figures for papers, and of curves: display lists and charts through matplotlib."""
+"""Figures for papers and charts of curves, through matplotlib, which the extra `figures` installs."""
+
+from harness.model.optional import optional
+
+optional("matplotlib", "figures", "figures")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -243,11 +242,6 @@ def _panel_title(case: Case, result: Result, what: str) -> str:
         found = shapes.thrusts(case.assembly, np.asarray(result.forces, dtype=float), thrust_lines.SMALLEST)
         what = "line of thrust" if thrust_lines.has_line_of_thrust(case.assembly, found) else "flow of forces"
     return f"{result.method}, {value_in_words(result)}: {what}"
-
-
-def html(words: str, figure: Figure | None, table: str = "") -> str:
-    """A heading, a table and a figure as HTML; the words are escaped, the table is taken as it is."""
-    return f"<p>{escape(words)}</p>{table}{'' if figure is None else svg(figure)}"
 
 
 def svg(figure: Figure) -> str:

@@ -59,8 +59,8 @@ def test_a_comparison_has_a_process_a_run_and_costs_a_row_where_one_dies(tmp_pat
     assert compared.report(tmp_path / "report.html").exists()
     here = drystone.compare([WALL], ["la-associated"], isolated=False)
     assert here.results[0].multiplier == pytest.approx(compared.results[0].multiplier)
-    assert "<svg" in here.results[0]._repr_html_()
-    assert "<svg" in WALL._repr_html_()
+    assert 'alt="Mechanism of ' in here.results[0]._repr_html_()
+    assert 'alt="The wall ' in WALL._repr_html_()
     assert "la-associated" in compared._repr_html_()
     assert compared.plot().axes
 

@@ -20,11 +20,11 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.optional import optional
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import StripShape, build_strips
-from methods.numerics.optional import optional
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def load_box2d() -> Any:
     Raises:
         InputError: it is not installed.
     """
-    return optional("pyb2d3", "box2d", "de-box2d")
+    return optional("pyb2d3", "box2d", "method de-box2d")
 
 
 @cache

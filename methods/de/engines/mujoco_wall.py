@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.optional import optional
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, is_chain, lighter_upwards, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import StripShape, require_lengths
 from methods.de.settings import MujocoSettings
-from methods.numerics.optional import optional
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def load_mujoco() -> Any:
     Raises:
         InputError: it is not installed.
     """
-    return optional("mujoco", "mujoco", "de-mujoco")
+    return optional("mujoco", "mujoco", "method de-mujoco")
 
 
 def mujoco_tunings(

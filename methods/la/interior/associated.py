@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from harness.model.joint_law import block_diagonal
+from harness.model.optional import optional
 from methods.la.core.exact import exact_forces, exact_mechanism
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
@@ -23,7 +24,6 @@ from methods.la.core.vertex_programmes import force_programme, standing
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.interior.newton_step import Point
 from methods.numerics.failures import NumericalFailure
-from methods.numerics.optional import optional
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ def _unclear(problem: Problem, state: CollapseState) -> float:
 
 def solve_with_cvxpy(problem: Problem, solver: str) -> tuple[str, FloatArray | None, float]:
     """The same programme written for reading: (outcome, forces (m, 3), multiplier), scaled."""
-    cvxpy = optional("cvxpy", "cvxpy", "la-associated-cvxpy")
+    cvxpy = optional("cvxpy", "cvxpy", "method la-associated-cvxpy")
 
     m = problem.n_interfaces
     forces: Any = cvxpy.Variable((m, 3))

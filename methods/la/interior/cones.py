@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.joint_law import block_diagonal
-from methods.numerics.optional import optional
+from harness.model.optional import optional
 from methods.numerics.stress_blocks import BlockLimit, crushing_force, kinematic_multiplier
 
 
@@ -21,7 +21,7 @@ def greatest_by_cones(
     assembly: Assembly, dead: FloatArray, live: FloatArray, most: float = np.inf, solver: str = "CLARABEL"
 ) -> BlockLimit:
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by a solver of cone programmes."""
-    cvxpy = optional("cvxpy", "cvxpy", "la-associated-cvxpy")
+    cvxpy = optional("cvxpy", "cvxpy", "method la-associated-cvxpy")
     m, n = assembly.n_interfaces, assembly.n_free
     column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
     own, acting = dead[assembly.free].ravel() * column, live[assembly.free].ravel() * column

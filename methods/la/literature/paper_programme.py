@@ -23,9 +23,9 @@ from scipy.sparse.csgraph import dijkstra
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.deadline import Deadline, OutOfTime
 from harness.model.joint_law import block_diagonal
+from harness.model.optional import optional
 from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
-from methods.numerics.optional import optional
 
 _FASTEST = 1e3
 """Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
@@ -108,7 +108,7 @@ def solve_paper_programme(
     Raises:
         OutOfTime: the time of the run is over.
     """
-    ipyopt = optional("ipyopt", "paper", "la-paper")
+    ipyopt = optional("ipyopt", "paper", "method la-paper")
 
     programme = _programme_of(problem)
     unknowns, iterations, message = programme.start(start_forces), 0, ""
