@@ -18,8 +18,10 @@ from drystone.cli.options import (
     json_flag,
     known_methods,
     print_json,
+    runs_options,
     say,
 )
+from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.sensitivity import Plateau, advised, over_tolerance, suggested
 from harness.model.build import build
@@ -27,7 +29,6 @@ from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection, inspect
 from harness.model.library import library
 from harness.model.load_cases import named_loads
-from harness.model.method_registry import load_method
 from harness.model.plausibility import saying
 from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
@@ -46,8 +47,9 @@ from harness.model.writing import write_whole
 )
 @json_flag
 @cases_option
+@runs_options
 @catching
-def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...]) -> None:
+def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...], runs: Runs) -> None:
     """List everything that is wrong or doubtful in CASE (an id, a case folder, a WALL.json or a drawing).
 
     Its joints and answer over the tolerance are listed too.
@@ -59,7 +61,7 @@ def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...]) -
     check_methods([method], "--method")
     looked = _looked_at(case, folders)
     joints = looked.built.assembly.n_interfaces if looked.built is not None else None
-    plateaus = _plateaus(looked, method)
+    plateaus = _plateaus(looked, method, runs)
     advice = suggested(plateaus)
     if as_json:
         rows = [{"number": k} | asdict(mark) | {"text": str(mark)} for k, mark in enumerate(looked.marks, start=1)]
@@ -130,12 +132,12 @@ def _list_marks(looked: Inspection, advice: float | None) -> None:
         )
 
 
-def _plateaus(looked: Inspection, method: str) -> list[Plateau]:
+def _plateaus(looked: Inspection, method: str, runs: Runs) -> list[Plateau]:
     """The plateaus over the tolerance; none where joints are given or no tolerance mends the wall."""
     if isinstance(looked.wall.interfaces, list):
         return []
     try:
-        plateaus = over_tolerance(looked.wall, load_method(method))
+        plateaus = over_tolerance(looked.wall, method, runs)
     except InputError:  # an outline is no polygon, or names are wrong: the marks say so
         return []
     return plateaus if any(plateau.joints is not None for plateau in plateaus) else []

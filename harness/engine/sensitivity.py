@@ -7,15 +7,17 @@ from itertools import groupby
 
 import numpy as np
 
-from harness.engine.judge import answered
+from harness.engine.pipeline import Runs
 from harness.model.assembly import Assembly
 from harness.model.blocks import typical_block_size
 from harness.model.build import build
+from harness.model.case import Case, CaseFile
 from harness.model.errors import InputError
 from harness.model.inspection import Inspection
 from harness.model.interfaces import DEFAULT_TOLERANCE
 from harness.model.load_cases import named_loads, under_load_case
-from harness.model.method import Method, Status
+from harness.model.method import Status
+from harness.model.result import Result
 from harness.model.wall import Detection, Wall
 
 WIDEST = 0.1
@@ -47,12 +49,13 @@ class Plateau:
     answer: str
 
 
-def over_tolerance(wall: Wall, method: Method | None = None) -> list[Plateau]:
+def over_tolerance(wall: Wall, method: str = "", runs: Runs = Runs()) -> list[Plateau]:
     """The plateaus of a wall whose interfaces are found, from a millionth to a tenth of the typical block size.
 
     Args:
-        wall: as read; method: asked once a plateau, at its default settings; without one the answers are empty.
-            A wall with load cases is asked about under the first of them.
+        wall: as read. One with load cases is asked about under the first of them.
+        method: asked once a plateau, at its default settings; empty: the answers are.
+        runs: how it is asked.
 
     Raises:
         InputError: blocks, names or load cases are wrong at any tolerance.
@@ -63,21 +66,21 @@ def over_tolerance(wall: Wall, method: Method | None = None) -> list[Plateau]:
     detection = wall.interfaces if isinstance(wall.interfaces, Detection) else Detection()
     size = typical_block_size(wall)
     decades = np.log10(WIDEST / DEFAULT_TOLERANCE)
-    tried = []
+    tried: list[tuple[float, Case, Assembly | str]] = []
     for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, WIDEST * size, round(decades * _A_DECADE) + 1).tolist():
         allowed = {"tolerance": tolerance, "greatest_gap": None, "greatest_overlap": None}
+        joined = wall.model_copy(update={"interfaces": detection.model_copy(update=allowed)})
+        case = Case(CaseFile(id="wall", title="wall", source="its joints at another tolerance"), joined, "")
         try:
-            found: Assembly | str = build(
-                wall.model_copy(update={"interfaces": detection.model_copy(update=allowed)})
-            ).assembly
+            found: Assembly | str = build(joined).assembly
         except InputError as error:
             found = f"{error.element}: {error.problem}" if error.element else error.problem
-        tried.append((tolerance, found))
+        tried.append((tolerance, case, found))
     plateaus = []
-    for _, group in groupby(tried, key=lambda item: _joints(item[1])):
+    for _, group in groupby(tried, key=lambda item: _joints(item[2])):
         members = list(group)
-        first = members[0][1]
-        answer = first if isinstance(first, str) else "" if method is None else _said(first, method)
+        _, case, first = members[0]
+        answer = first if isinstance(first, str) else _said(runs.result(case, method, {})) if method else ""
         joints = None if isinstance(first, str) else first.n_interfaces
         plateaus.append(Plateau(members[0][0], members[-1][0], joints, answer))
     return plateaus
@@ -115,9 +118,8 @@ def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:
     return tuple(zip(found.block_a.tolist(), found.block_b.tolist(), strict=True))
 
 
-def _said(assembly: Assembly, method: Method) -> str:
-    result, judgement = answered(method, assembly)
+def _said(result: Result) -> str:
     if result.status is not Status.OK:
         return str(result.status)
     value = str(result.finding) if result.multiplier is None else f"{result.multiplier:.6g}"
-    return value if judgement.accepted else f"{value} ({judgement.outcome.replace('_', ' ')})"
+    return value if result.judge.accepted else f"{value} ({result.judge.outcome.replace('_', ' ')})"

@@ -55,6 +55,12 @@ def test_wall_that_cannot_be_built_is_shown_over_the_tolerance_all_the_same(tmp_
     assert told["tolerances"][-1]["joints"]
 
 
+def test_a_method_that_eats_memory_costs_its_answer_alone():
+    run = CliRunner().invoke(main, ["validate", "wall-21", "--method", "de", "--memory", "16", "--json"])
+    assert run.exit_code == 0
+    assert [plateau["answer"] for plateau in json.loads(run.stdout)["tolerances"]] == ["out_of_memory"]
+
+
 def square(name: str, x: float, y: float, size: float = 1.0, **more: Any) -> dict[str, Any]:
     corners = [[x, y], [x + size, y], [x + size, y + size], [x, y + size]]
     return {"id": name, "polygon": corners, **more}
