@@ -128,14 +128,13 @@ def _ids(ax: Axes, looked: Inspection, point: float, sheet: Sheet, *, dimensions
         lines = [name, _size(outline)] if dimensions else [name]
         across, up = np.ptp(outline, axis=0) / point
         letters = max(len(line) for line in lines)
-        size = min(
-            sheet.text, 0.9 * across / (sheet.wide * letters), (0.8 if dimensions else 0.5) * up / (1.3 * len(lines))
-        )
+        high = 0.8 / (2 * 1.7) if dimensions else 0.5 / 1.3  # of the block: two lines far apart, or one
+        size = min(sheet.text, 0.9 * across / (sheet.wide * letters), high * up)
         if size < sheet.least:
             continue
         x, y = _inside(outline)
-        above = "center" if dimensions else "bottom"  # of the arrow of a load
-        ax.text(x, y, "\n".join(lines), ha="center", va=above, color=COLOURS["ink"], fontsize=size, linespacing=1.1)
+        above = "center" if dimensions else "bottom"  # the arrow of a load goes between the lines, or below one
+        ax.text(x, y, "\n".join(lines), ha="center", va=above, color=COLOURS["ink"], fontsize=size, linespacing=1.9)
 
 
 def _inside(outline: FloatArray) -> tuple[float, float]:

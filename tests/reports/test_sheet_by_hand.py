@@ -81,7 +81,7 @@ def test_dimensions_are_those_of_the_wall_and_of_its_blocks():
     assert {"ground\n2 x 0.5", "stone\n1.5 x 0.5", f"{BRICK}\n0.1 x 0.4"} <= set(found)
     assert found["stone\n1.5 x 0.5"].get_va() == "center"
     large = texts(inspected_figure(looked(), dimensions=True, sheet=Sheet(text=60.0)))
-    assert large["ground\n2 x 0.5"].get_fontsize() == pytest.approx(0.8 * (0.5 / POINT) / (1.3 * 2))
+    assert large["ground\n2 x 0.5"].get_fontsize() == pytest.approx(0.8 * (0.5 / POINT) / (1.7 * 2))
     assert found["2"].get_position() == pytest.approx((2.0, 4.0 + 0.6 * MARGIN))
     assert found["1"].get_position() == pytest.approx((3.0 + 0.6 * MARGIN, 3.5))
     assert found["1"].get_rotation() == 90.0
