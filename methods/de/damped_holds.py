@@ -22,7 +22,7 @@ from methods.de.holds.release import release
 from methods.de.methods import DE, DE_BOX2D, DE_MUJOCO
 from methods.de.settings import Box2dSettings, MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
-from methods.numerics.residual_strength import plastic_and_residual
+from methods.numerics.residual_strength import by_component
 from methods.springs.warm_up import block_on_halves
 
 
@@ -44,10 +44,7 @@ class DampedHolds(Solver):
 
     def solve(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         """Bracket of the collapse multiplier over sweep orders; see `methods.de.answers`."""
-
-        return plastic_and_residual(
-            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
-        )
+        return by_component(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         if assembly.crushes:

@@ -28,9 +28,8 @@ from methods.fe.convex_steps import bracket_collapse
 from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history, with_initial_shear
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
-from methods.numerics.claims import analysed
 from methods.numerics.pressed_search import by_strips
-from methods.numerics.residual_strength import plastic_and_residual
+from methods.numerics.residual_strength import by_component
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.path_record import PathEnd
@@ -90,9 +89,7 @@ class GapSprings(Solver):
             events = self._limits.fewest + self._limits.first * settings.points * assembly.n_interfaces
             most = settings.max_events or events
             return brittle_answer(assembly, settings, _unit(assembly), most, self._histories)
-        return plastic_and_residual(
-            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
-        )
+        return by_component(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.crushes:
@@ -204,9 +201,7 @@ class IncrementalNewton(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """March as a general code does; a value only where a mechanism was reached and checked."""
-        return plastic_and_residual(
-            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
-        )
+        return by_component(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         model = build_model(assembly, settings)
@@ -234,9 +229,7 @@ class ConvexSteps(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Bracket the multiplier at which the steps lose their equilibrium; refused above the set number of blocks."""
-        return plastic_and_residual(
-            assembly, lambda wall: analysed(wall, lambda part: self._of_component(part, settings))
-        )
+        return by_component(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.n_free > settings.max_blocks:

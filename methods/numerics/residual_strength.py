@@ -13,6 +13,7 @@ from harness.model.deadline import best_so_far
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
 from harness.model.errors import as_sentence
 from harness.model.method import Answer, Finding, Status
+from methods.numerics.claims import analysed
 
 
 def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
@@ -27,6 +28,11 @@ def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]
     said = "The time was over before the wall without strength was solved."
     residual = best_so_far(lambda: solve(assembly.residual), lambda: Answer(Status.NOT_CONVERGED, Finding.NONE, said))
     return between(assembly, plastic, residual) if assembly.breaks else with_residual(plastic, residual)
+
+
+def by_component(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
+    """As `plastic_and_residual`, where `solve` answers for an independent component of the wall."""
+    return plastic_and_residual(assembly, lambda wall: analysed(wall, solve))
 
 
 def with_residual(plastic: Answer, residual: Answer) -> Answer:
