@@ -18,6 +18,8 @@ from harness.model.pressure import Outlines
 from harness.model.pressure_fields import Fill
 
 NO_FACE = -1
+_MOST_COMPARED = 1_000_000_000
+"""Places whose heights are compared on all faces that look up, some seconds of work."""
 
 
 def fill_forces(
@@ -78,6 +80,9 @@ def highest_faces(outlines: Outlines, between: tuple[float, float] | None = None
     Args:
         outlines: of all blocks, counter-clockwise: edges that look up go to the left.
         between: range of x; the whole wall if None.
+
+    Raises:
+        InputError: so many faces lie above each other that they take minutes to compare.
     """
     first, last = outlines.first[:, 0], outlines.last[:, 0]
     up = np.flatnonzero(last < first)
@@ -86,6 +91,14 @@ def highest_faces(outlines: Outlines, between: tuple[float, float] | None = None
     middle = 0.5 * (x[:-1] + x[1:])
     face, height = np.full(len(middle), NO_FACE), np.full(len(middle), -np.inf)
     starts, stops = np.searchsorted(middle, last[up]), np.searchsorted(middle, first[up])
+    compared = int((stops - starts).sum())
+    if compared > _MOST_COMPARED:
+        raise InputError(
+            f"{len(up):,} faces that look up lie above each other at {compared:,} places, and the heights of at most "
+            f"{_MOST_COMPARED:,} are compared",
+            "Analyse a part of the wall, or simplify the outlines",
+            "blocks",
+        )
     for edge, start, stop in zip(up.tolist(), starts.tolist(), stops.tolist(), strict=True):
         own = heights(outlines, edge, middle[start:stop])
         above = np.flatnonzero(own > height[start:stop]) + start

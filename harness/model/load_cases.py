@@ -90,7 +90,10 @@ def named_loads_of(case: Case) -> dict[str, NamedLoads]:
 
 def _count(loads: Loads) -> int:
     """Forces and pressures of a load case."""
-    return sum(len(load.body) + len(load.points) + len(load.pressures) for load in (loads.dead, loads.live or Load()))
+    return sum(
+        len(load.body) + len(load.points) + len(load.pressures) + len(load.fills)
+        for load in (loads.dead, loads.live or Load())
+    )
 
 
 def _add(found: dict[str, NamedLoads], name: str, loads: NamedLoads) -> None:
@@ -128,7 +131,10 @@ def _chosen(
             f"combinations.{name}",
         )
     for chosen in product(*options):
-        yield "".join(suffix for _, _, suffix in chosen), {case: factor for case, factor, _ in chosen}
+        sums: dict[str, float] = {}
+        for case, factor, _ in chosen:  # a place of a load that travels may be named besides, and be met twice
+            sums[case] = sums.get(case, 0.0) + factor
+        yield "".join(suffix for _, _, suffix in chosen), sums
 
 
 def _combined(

@@ -69,13 +69,15 @@ def _unknown_groups(wall: Wall, blocks: list[Block]) -> Iterator[InputError]:
     groups = {group for block in blocks for group in block.groups}
     hints = Hints(groups)
     there = hints.there(MOST_NAMED) or "none"
+    named: list[tuple[str, str | None]] = []
     for where, load in _loads_of(wall):
-        named = [(f"{where}.body[{number}]", body.group) for number, body in enumerate(load.body)]
+        named += [(f"{where}.body[{number}]", body.group) for number, body in enumerate(load.body)]
         named += [(place, each.group) for place, each in _on_faces(where, load)]
-        for place, group in named:
-            if group is not None and group not in groups:
-                remedy = f"{hints.of(group)} Groups of this wall: {there}".strip()
-                yield InputError(f'no block is in a group "{group}"', remedy, place)
+    named += [(f"travelling.{name}", travelling.group) for name, travelling in wall.travelling.items()]
+    for place, group in named:
+        if group is not None and group not in groups:
+            remedy = f"{hints.of(group)} Groups of this wall: {there}".strip()
+            yield InputError(f'no block is in a group "{group}"', remedy, place)
 
 
 def _loads_on_supports(wall: Wall, fixed: set[str]) -> Iterator[InputError]:

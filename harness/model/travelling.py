@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -11,8 +13,11 @@ import shapely
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.errors import InputError
 from harness.model.fields import Point
-from harness.model.geometry import CHUNK, following
+from harness.model.fill import highest_faces
+from harness.model.geometry import CHUNK, shapes_of
 from harness.model.load_fields import Load, Loads, PointForce, Travelling
+from harness.model.pressure import Outlines, outlines_of
+from harness.model.rings import rings_of
 from harness.model.wall import Block
 
 SHARE = 1e-3
@@ -21,7 +26,7 @@ LEVEL = 1e-6
 """Sine of the angle from upright within which a face is upright, as coordinates are rounded, and does not look up."""
 
 MOST_READ = 2_000_000
-"""Vertices of blocks above faces that are compared with them, a few seconds of work."""
+"""Vertices of blocks that touch faces and are compared with them, a few seconds of work."""
 
 Face = tuple[int, FloatArray, FloatArray]
 """A block and the two ends (2,) of a face of it, from left to right."""
@@ -96,80 +101,88 @@ def upward_faces(polygons: Sequence[FloatArray], chosen: Iterable[int], *, from_
     """The parts of edges of the chosen blocks that look towards +y and touch no other block.
 
     Args:
-        polygons: (n,) counter-clockwise outlines (k, 2) [length].
+        polygons: (n,) counter-clockwise outlines (k, 2), those with holes too [length].
         chosen: indices of blocks.
-        from_above: whether parts with a block anywhere above them are left out.
+        from_above: whether parts with stone anywhere above them are left out, that of their own block too.
 
     Raises:
-        InputError: so many blocks lie above so many faces that they take minutes to compare.
+        InputError: so many blocks touch so many faces, or lie above them, that they take minutes to compare.
     """
-    which = list(chosen)
-    owner = np.repeat(np.array(which, dtype=np.int64), [len(polygons[k]) for k in which])
-    if not len(owner):
-        return []
+    outlines = _outlines_and_holes(polygons)
     # What looks up runs from right to left on a counter-clockwise outline.
-    right = np.concatenate([polygons[k] for k in which])
-    left = np.concatenate([following(polygons[k]) for k in which])
-    looks_up = right[:, 0] - left[:, 0] > LEVEL * np.hypot(*(right - left).T)
-    owner, left, right = owner[looks_up], left[looks_up], right[looks_up]
-    shapes = np.array([shapely.Polygon(polygon) for polygon in polygons])
-    touch = SHARE * np.sqrt(shapely.area(shapes))[owner]
-    length, along = np.hypot(*(right - left).T), right - left
-    off = (touch / length)[:, None] * np.stack([-along[:, 1], along[:, 0]], axis=1)
-    ends = np.stack([left + off, right + off], axis=1)
-    tree = shapely.STRtree(shapes)
-    seen = _seen(tree, shapely.linestrings(ends), owner, ends[:, 0, 0], along[:, 0])
-    if from_above:
-        # Most faces are covered by the blocks that lie on them: only what is left is compared with all blocks above.
-        top = max(float(polygon[:, 1].max()) for polygon in polygons)
-        bare = np.array([k for k, gaps in enumerate(seen) if _long(gaps, length[k], touch[k])], dtype=np.int64)
-        sky = ends[bare][:, ::-1].copy()
-        sky[:, :, 1] = top + touch[bare][:, None]
-        columns = shapely.polygons(np.concatenate([ends[bare], sky], axis=1))
-        above = _seen(tree, columns, owner[bare], ends[bare, 0, 0], along[bare, 0])
-        seen = [[] for _ in seen]
-        for k, gaps in zip(bare.tolist(), above, strict=True):
-            seen[k] = gaps
+    along = outlines.first - outlines.last
+    looks_up = (along[:, 0] > LEVEL * np.hypot(*along.T)) & np.isin(outlines.block, list(chosen))
+    edges = np.flatnonzero(looks_up)
+    shapes = shapes_of(polygons)
+    touch = SHARE * np.sqrt(shapely.area(shapes))[outlines.block[edges]]
+    seen = _highest(outlines, edges) if from_above else _bare(outlines, edges, shapes, touch)
+    left, along = outlines.last[edges], along[edges]
+    length = np.hypot(*along.T)
     return [
-        (int(owner[k]), left[k] + a * along[k], left[k] + b * along[k])
-        for k, gaps in enumerate(seen)
-        for a, b in _long(gaps, length[k], touch[k])
+        (int(outlines.block[edge]), left[k] + a * along[k], left[k] + b * along[k])
+        for k, (edge, gaps) in enumerate(zip(edges.tolist(), seen, strict=True))
+        for a, b in gaps
+        if (b - a) * length[k] > touch[k]
     ]
 
 
-def _long(gaps: list[tuple[float, float]], length: float, touch: float) -> list[tuple[float, float]]:
-    """The parts of a face that are longer than what is none."""
-    return [(a, b) for a, b in gaps if (b - a) * length > touch]
+def _outlines_and_holes(polygons: Sequence[FloatArray]) -> Outlines:
+    """The edges of all blocks and of their holes, without the cuts between these."""
+    rings = [(k, ring) for k, polygon in enumerate(polygons) for ring in rings_of(polygon)]
+    edges = outlines_of([ring for _, ring in rings])
+    return Outlines(edges.first, edges.last, np.array([k for k, _ in rings], dtype=np.int64)[edges.block])
 
 
-def _seen(
-    tree: shapely.STRtree, areas: np.ndarray, owner: IntArray, begin: FloatArray, width: FloatArray
+def _highest(outlines: Outlines, edges: IntArray) -> list[list[tuple[float, float]]]:
+    """Of each edge the parts, in shares of its width, that are seen from above."""
+    x, face = highest_faces(outlines)
+    change = np.flatnonzero(np.diff(face)) + 1
+    parts: dict[int, list[tuple[float, float]]] = defaultdict(list)
+    for start, stop in pairwise([0, *change.tolist(), len(face)]):
+        parts[int(face[start])].append((float(x[start]), float(x[stop])))
+    found = []
+    for edge in edges.tolist():
+        left, right = outlines.last[edge, 0], outlines.first[edge, 0]
+        found.append([((low - left) / (right - left), (high - left) / (right - left)) for low, high in parts[edge]])
+    return found
+
+
+def _bare(
+    outlines: Outlines, edges: IntArray, shapes: np.ndarray, touch: FloatArray
 ) -> list[list[tuple[float, float]]]:
-    """Of every face the parts, in shares of its width, where no other block lies in the area above it.
+    """Of each edge the parts, in shares of its width, that no other block touches.
 
     Args:
-        tree: of the outlines of all blocks.
-        areas: (k,) that are looked through; owner: (k,) blocks of the faces; begin, width: (k,) along x [length].
+        outlines: of all blocks; edges: (k,) of them; shapes: (n,) of the blocks.
+        touch: (k,) distance within which a block touches an edge [length].
 
     Raises:
         InputError: as of `upward_faces`.
     """
-    shapes, hidden = tree.geometries, [list[tuple[float, float]]() for _ in areas]
-    vertices, read = shapely.get_num_coordinates(tree.geometries), 0
-    for first in range(0, len(areas), CHUNK):
-        face, other = tree.query(areas[first : first + CHUNK])
+    left, right, owner = outlines.last[edges], outlines.first[edges], outlines.block[edges]
+    along = right - left
+    off = (touch / np.hypot(*along.T))[:, None] * np.stack([-along[:, 1], along[:, 0]], axis=1)
+    lines = shapely.linestrings(np.stack([left + off, right + off], axis=1))
+    begin, width = (left + off)[:, 0], along[:, 0]
+    tree, hidden = shapely.STRtree(shapes), [list[tuple[float, float]]() for _ in edges]
+    vertices, read = shapely.get_num_coordinates(shapes), 0
+    for first in range(0, len(lines), CHUNK):
+        face, other = tree.query(lines[first : first + CHUNK])
         face += first
         others = owner[face] != other
         face, other = face[others], other[others]
         read += int(vertices[other].sum())
         if read > MOST_READ:
             raise InputError(
-                f"above the {len(areas):,} faces that look up lie so many blocks that more than {MOST_READ:,} "
+                f"so many blocks touch the {len(lines):,} faces that look up that more than {MOST_READ:,} "
                 "vertices would be compared with them",
-                'Say "along": "extrados", simplify the outlines, or write the load cases out as point forces',
+                'Say "along": "top", simplify the outlines, or write the load cases out as point forces',
                 "travelling",
             )
-        low, _, high, _ = shapely.bounds(shapely.intersection(areas[face], shapes[other])).T
+        # A block that touches a face in several places leaves what is between them bare.
+        pieces, pair = shapely.get_parts(shapely.intersection(lines[face], shapes[other]), return_index=True)
+        face = face[pair]
+        low, _, high, _ = shapely.bounds(pieces).T
         low, high = ((end - begin[face]) / width[face] for end in (low, high))
         cut = np.isfinite(low)
         for k, a, b in zip(face[cut].tolist(), low[cut].tolist(), high[cut].tolist(), strict=True):

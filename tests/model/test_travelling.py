@@ -108,6 +108,46 @@ def test_upward_faces_leave_out_upright_and_covered_ones():
     ]
 
 
+SLAB = {"id": "slab", "polygon": [[0, 0], [4, 0], [4, 0.5], [0, 0.5]]}
+FEET = [[0, 0.5], [0.5, 0.5], [0.5, 1.5], [3.5, 1.5], [3.5, 0.5], [4, 0.5], [4, 2], [0, 2]]
+LIPS = [[0, 0], [4, 0], [4, 2], [2.8, 2], [2.8, 1.8], [3.5, 1.8], [3.5, 0.5], [0.5, 0.5], [0.5, 1.8], [1.2, 1.8]]
+WITHIN = {"id": "stone", "polygon": [[0.5, 0.5], [3.5, 0.5], [3.5, 1], [0.5, 1]]}
+FRAME = {
+    "id": "frame",
+    "polygon": [[0, 0], [4, 0], [4, 2], [0, 2]],
+    "holes": [[[1, 0.5], [3, 0.5], [3, 1.5], [1, 1.5]]],
+}
+
+
+@pytest.mark.parametrize(
+    ("stones", "along", "expected"),
+    [
+        ([SLAB, {"id": "portal", "polygon": FEET}], "extrados", [("slab", (2, 0.5)), ("portal", (2, 2))]),
+        ([SLAB, {"id": "portal", "polygon": FEET}], "top", [("portal", (2, 2))]),
+        (
+            [{"id": "trough", "polygon": [*LIPS, [1.2, 2], [0, 2]]}, WITHIN],
+            "top",
+            [("trough", (0.6, 2)), ("stone", (2, 1)), ("trough", (3.4, 2))],
+        ),
+        ([FRAME], "extrados", [("frame", (2, 0.5)), ("frame", (2, 2))]),
+        ([FRAME], "top", [("frame", (2, 2))]),
+    ],
+)
+def test_stones_that_are_not_convex_hide_what_is_under_them_and_no_more(stones: list[Any], along: str, expected: Any):
+    """Between the feet of a portal a slab is bare; a trough is open between its lips; no face leads to a hole."""
+    ground = {"id": "ground", "polygon": [[0, -1], [4, -1], [4, 0], [0, 0]], "fixed": True}
+    wall = {"format": "wall/1", "friction": 0.5, "unit_weight": 1, "blocks": [ground, *stones]}
+    found = points(wall | {"travelling": {"p": DOWN | {"along": along}}})
+    assert found == [(block, pytest.approx(at)) for block, at in expected]
+
+
+def test_a_load_that_travels_and_one_of_its_places_add_up():
+    document = data(stack(2), travelling={"p": DOWN | {"per_face": 2}}, combinations={"c": {"p": 1.5, "p-2": 0.5}})
+    found = named_loads(Wall.model_validate(document))
+    forces = {name: [point.force for point in found[name].own.live.points] for name in ("c-1", "c-2")}
+    assert forces == {"c-1": [(0.0, -1.5), (0.0, -0.5)], "c-2": [(0.0, -2.0)]}
+
+
 def test_combination_adds_loads_with_factors_and_one_for_the_dead_load():
     """1.35 (gravity + dead) + 1.5 crane + 0.9 push, dead and live part by part."""
     cases = {
@@ -188,7 +228,7 @@ def test_file_round_trip_and_command(tmp_path: Path):
     [
         ({"travelling": {"p": {"force": [0, 0]}}}, "no force"),
         ({"travelling": {"p": DOWN | {"blocks": ["1"]}}}, "acts on no face"),
-        ({"travelling": {"p": DOWN | {"group": "none"}}}, "acts on no face"),
+        ({"travelling": {"p": DOWN | {"group": "none"}}}, 'no block is in a group "none"'),
         ({"travelling": {"p": DOWN | {"blocks": ["nobody"]}}}, 'no block is called "nobody"'),
         ({"travelling": {"p": DOWN | {"blocks": ["2"], "group": "g"}}}, "either blocks or group"),
         ({"travelling": {"p": DOWN | {"per_face": 0}}}, "per_face"),
