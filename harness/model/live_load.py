@@ -104,7 +104,10 @@ def both_signs(case: Case) -> list[Case]:
         )
     wall = case.wall_id or case.id
     opposite = reversed_live(case)
-    ways = [", ".join(filter(None, (case.load_case, direction_in_words(each)))) for each in (case, opposite)]
+    ways = [direction_in_words(each) for each in (case, opposite)]
+    if ways[0] == ways[1]:  # some of it to the right and some to the left
+        ways = ["as given", "reversed"]
+    ways = [", ".join(filter(None, (case.load_case, way))) for way in ways]
     return [
         replace(case, wall_id=wall, load_case=ways[0]),
         replace(opposite.called(f"{case.id}-reversed"), wall_id=wall, load_case=ways[1]),

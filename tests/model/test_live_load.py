@@ -103,6 +103,16 @@ def test_both_signs_are_two_load_cases_of_one_wall():
     assert back.assembly.live.tolist() == (-case.assembly.live).tolist()
 
 
+def test_both_signs_of_loads_several_ways_have_a_name_each():
+    """The upper block is pushed to the left, the lower to the right: reversed, both loads act in several directions."""
+    upper = {"id": "b", "polygon": [[0, 0.2], [0.4, 0.2], [0.4, 0.4], [0, 0.4]]}
+    data = {"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": [*STONES, upper]}
+    live = {"body": [{"per_weight": [1, 0], "blocks": ["a"]}, {"per_weight": [-0.3, 0], "blocks": ["b"]}]}
+    cases = both_signs(drystone.build_wall(data | {"loads": {"live": live}}).case)
+    assert [case.load_case for case in cases] == ["as given", "reversed"]
+    assert cases[1].assembly.live.tolist() == (-cases[0].assembly.live).tolist()
+
+
 @pytest.mark.parametrize("live", [body(0, -1), None, {"pressures": [{"from": [0, 0], "to": [0, 0.2], "uniform": 1.0}]}])
 def test_both_signs_of_what_is_no_earthquake_are_refused(live: dict[str, Any] | None):
     with pytest.raises(InputError, match="its live load is not horizontal, or a pressure"):
