@@ -271,11 +271,16 @@ def _fall_of_strong(assembly: Assembly) -> FloatArray | None:
 
 
 def growing_forces(assembly: Assembly) -> FloatArray | None:
-    """Forces (m, 3) that bear the live load and any multiple of it, as no strength of a joint does; None if none."""
+    """Forces (m, 3) that bear the live load and any multiple of it, as no strength of a joint does; None if none.
+
+    What is rounding of the largest is zero: blocks that the live load does not reach are then in equilibrium exactly.
+    """
     rigid = np.isinf(assembly.crushing)
-    found = admissible_forces(assembly.without_strength.with_joints(rigid), assembly.live)
+    dry = assembly.without_strength.with_joints(rigid)
+    found = admissible_forces(dry, assembly.live)
     if found is None:
         return None
+    found[abs(found) <= 8.0 * np.finfo(float).eps * abs(found).max(initial=0.0)] = 0.0
     growth = np.zeros((assembly.n_interfaces, 3))
-    growth[rigid] = found
+    growth[rigid] = dry.law.within(found)
     return growth

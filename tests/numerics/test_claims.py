@@ -15,6 +15,7 @@ from harness.model.method_registry import load_method
 from harness.model.reading import read_wall
 from methods.numerics.claims import at_limit
 from tests.known_walls import WALLS
+from tests.walls import assembly, running_bond
 
 EDGE = Path(__file__).parent.parent / "data" / "knife-edge"
 
@@ -73,3 +74,12 @@ def test_springs_that_are_stiff_in_shear_have_the_limit_of_goodman_and_bray(fric
     fe = load_method("fe")
     at = replace(wall, friction=np.full_like(wall.friction, friction))
     assert fe.solve(at, fe.Settings(stiffness_ratio=10.0)).finding is finding
+
+
+def test_a_load_on_few_blocks_is_proved_to_be_borne_without_end():
+    """The blocks beside its way to the ground carry none of it, not even rounding, so that each is in equilibrium."""
+    load = {"live": {"points": [{"block": "2.1", "at": [0.5, 0.25], "force": [-0.79, -2.57]}]}}
+    pattern = running_bond(2, 2, 0.5, 0.25)
+    for method in ("la-associated", "fe"):
+        result, judgement = answered(load_method(method), assembly(pattern, 0.446, loads=load))
+        assert (result.finding, judgement.accepted) == (Finding.UNBOUNDED, True)
