@@ -125,6 +125,10 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
         bars = _bars(wall, index)
         for number in resisting:
             bars = bars.followed_by(fill_as_bars(wall, laid, assembly.support_motion, number))
+        given = len(wall.ties) + len(wall.props)
+        if shared := set(bars.names[:given]).intersection(bars.names[given:]):
+            problem = f'a tie or prop is called "{min(shared)}", as is a bar of passive fill'
+            raise InputError(problem, "Give every bar an id of its own", "wall")
         prestress = np.where(fixed[:, None], 0.0, bars.generalised(bars.prestress, centroids))
         assembly = replace(assembly, bars=bars, dead=assembly.dead + prestress)
     if laws.strong:

@@ -34,6 +34,8 @@ SIZES = (0.05, 250.0)
 """Extent of a wall [m]: a model on a tilting table has 0.1 and more, the highest masonry stands 170 high."""
 _SMALL_BLOCK = 1e-3
 """Size of a block in extents of the wall below which it is worth a warning."""
+_STRONGEST_BAR = 1e5
+"""Yield force of a tie or prop in dead loads beyond which the judge cannot tell its rounding from work."""
 _SMALL_LOAD = 1e-6
 """Share of the live load in the dead load, or the other way round, below which one of them is hardly meant."""
 
@@ -54,6 +56,7 @@ def input_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[
         *_size_slips(wall, blocks, assembly),
         *_load_slips(assembly),
         *_gravity_slips(wall),
+        *_bar_slips(assembly),
         *_field_slips(wall),
     ]
 
@@ -219,18 +222,35 @@ def _gravity_slips(wall: Wall) -> list[str]:
     return [f"loads.gravity is {multiple:.3g} times the weight of every block: an acceleration? The weight is [0, -1]"]
 
 
+def _bar_slips(assembly: Assembly) -> list[str]:
+    """Sentences about bars that are hardly meant to yield."""
+    bars = assembly.bars
+    borne = np.maximum(bars.greatest, -bars.least) / assembly.force_scale
+    strong = np.flatnonzero(borne > _STRONGEST_BAR).tolist()
+    if not strong:
+        return []
+    return [
+        f"{first_few([bars.names[k] for k in strong], 5)}: bears up to {borne.max():.2g} times the dead load, and "
+        f"methods may find no answer beyond {_STRONGEST_BAR:g} times: give what it can bear"
+    ]
+
+
 def _field_slips(wall: Wall) -> list[str]:
-    """Sentences about unit weights and friction angles of water, earth and fill."""
+    """Sentences about levels, unit weights and friction angles of water, earth and fill."""
     found: list[tuple[str, Water | Earth | Fill | Passive]] = []
+    sentences = []
     for kind, load in (("dead", wall.loads.dead), ("live", wall.loads.live or Load())):
         for number, pressure in enumerate(load.pressures):
             place = f"loads.{kind}.pressures[{number}]"
-            found += [(place, field) for field in (pressure.water, pressure.earth) if field is not None]
+            beside = pressure.water or pressure.earth
+            if beside is not None:
+                found.append((place, beside))
+                if min(pressure.start[1], pressure.end[1]) >= beside.level:
+                    sentences.append(f"{place} lies nowhere below its level {beside.level:g}, so it does nothing")
         for number, fill in enumerate(load.fills):
             place = f"loads.{kind}.fills[{number}]"
             found += [(place, field) for field in (fill, fill.passive) if field is not None]
     name = wall.units.unit_weight_name
-    sentences = []
     for place, field in found:
         weight = 0.0 if isinstance(field, Passive) else field.unit_weight
         least, most = _LOAD_UNIT_WEIGHTS

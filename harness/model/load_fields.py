@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
 from harness.model.fields import MANY, OTHER, Blocks, Name, Number, Point, Strict
 from harness.model.pressure_fields import Fill, Pressure
@@ -45,7 +45,22 @@ def _vector_or_switch(value: Any) -> str:
     return MANY if isinstance(value, list | tuple) else OTHER
 
 
-Gravity = Annotated[Annotated[Point, Tag(MANY)] | Annotated[StrictBool, Tag(OTHER)], Discriminator(_vector_or_switch)]
+def _is_no_size(value: Any) -> Any:
+    """A vector or a switch.
+
+    Raises:
+        ValueError: it is a number or a word, as for an acceleration or a direction.
+    """
+    if isinstance(value, str | int | float) and not isinstance(value, bool):
+        raise ValueError("gravity is [x, y], a multiple of the weight of every block, as [0, -1], or true or false")
+    return value
+
+
+Gravity = Annotated[
+    Annotated[Point, Tag(MANY)] | Annotated[StrictBool, Tag(OTHER)],
+    Discriminator(_vector_or_switch),
+    BeforeValidator(_is_no_size),
+]
 
 
 class Loads(Strict):

@@ -267,6 +267,14 @@ def test_passive_fill_that_cannot_be_is_refused(change: dict[str, Any], words: s
         build(parse_wall(block(0.2, **change), "wall"))
 
 
+def test_a_tie_has_not_the_name_of_what_fill_bears():
+    """Tables and the columns of a path know a bar by its name."""
+    tie = {"from": {"block": "base", "at": [-1, 0]}, "to": {"block": "block", "at": [0, 0.5]}, "yield_force": 1.0}
+    data = block(0.2) | {"ties": [tie | {"id": "fill 1, right of block"}]}
+    with pytest.raises(InputError, match='"fill 1, right of block", as is a bar of passive fill'):
+        build(parse_wall(data, "wall"))
+
+
 def test_a_live_fill_does_not_resist():
     data = block(0.2)
     data["loads"]["live"]["fills"] = data["loads"]["dead"].pop("fills")

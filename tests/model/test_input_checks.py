@@ -257,6 +257,12 @@ def test_all_faults_of_blocks_are_told_at_once():
     assert [fault.element for fault in caught.value.faults] == ["loads.live.points[0]", "loads.live.points[1]"]
 
 
+@pytest.mark.parametrize("gravity", [9.81, "down"])
+def test_gravity_that_is_no_vector_is_refused_with_what_it_may_be(gravity: Any):
+    with pytest.raises(InputError, match=r"gravity is \[x, y\], a multiple of the weight"):
+        parse_wall(data(loads={"gravity": gravity}), "")
+
+
 @pytest.mark.parametrize("gravity", [[0, -9.81], [0, -9.8], [0.5, -9.81]])
 def test_an_acceleration_as_gravity_is_told(gravity: list[float]):
     found = warnings_of(data(loads={"gravity": gravity, "live": PUSH}))
@@ -289,3 +295,26 @@ def test_a_unit_weight_or_an_angle_of_a_load_in_another_unit_is_told():
     assert "a friction_angle of 0.52 degrees" in "".join(told(**earth(friction_angle=0.52)))
     passive = {"mobilised": 0.5, "friction_angle": 0.52}
     assert "a friction_angle of 0.52 degrees" in "".join(told(**fill(passive=passive)))
+
+
+def test_water_or_earth_that_lies_below_its_face_is_told():
+    face = {"from": [0, 0.5], "to": [0, 1]}
+    water, earth = {"level": 0.5, "unit_weight": 9.81}, {"level": 0.6, "unit_weight": 18, "coefficient": 0.4}
+    low, high = [face | {"water": water}], [face | {"earth": earth}]
+    told = warnings_of(data(loads={"live": PUSH, "dead": {"pressures": [*low, *high]}}))
+    assert told == ["loads.dead.pressures[0] lies nowhere below its level 0.5, so it does nothing"]
+
+
+@pytest.mark.parametrize(("yield_force", "told"), [(4e5, False), (4e7, True)])
+def test_a_tie_that_never_yields_is_told(yield_force: float, told: bool):
+    """The block weighs 40: beyond 1e5 times the dead load the judge cannot tell rounding from the work of a tie."""
+    tie = {"from": {"block": "ground", "at": [-1, 0]}, "to": {"block": "a", "at": [0, 1]}, "yield_force": yield_force}
+    found = warnings_of(data(ties=[tie]))
+    assert (
+        found
+        == [
+            "tie 1: bears up to 1e+06 times the dead load, and methods may find no answer beyond 100000 "
+            "times: give what it can bear"
+        ]
+        * told
+    )
