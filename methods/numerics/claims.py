@@ -108,6 +108,8 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
     if statics is not None and statics.at_limit:
         return _with_limit(answer, statics)
     bears = 0.0 if statics is None else statics.multiplier
+    if abs(bears) <= np.finfo(float).eps * assembly.load_unit:
+        bears = 0.0  # rounding, of a mechanism on which the dead load does no work
     near = -SMALL * assembly.load_unit <= bears < 0.0 and answer.finding is not Finding.FALLS
     if statics is not None and bears < 0.0 and (near or answer.multiplier is not None):
         return _falls(answer, statics.mechanism)

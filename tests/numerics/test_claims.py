@@ -83,3 +83,16 @@ def test_a_load_on_few_blocks_is_proved_to_be_borne_without_end():
     for method in ("la-associated", "fe"):
         result, judgement = answered(load_method(method), assembly(pattern, 0.446, loads=load))
         assert (result.finding, judgement.accepted) == (Finding.UNBOUNDED, True)
+
+
+def test_blocks_without_dead_load_that_are_pushed_collapse_at_zero_and_do_not_fall():
+    """Of a wall without gravity only fill on its top bears: the greatest multiplier is zero, and came out as -7e-37."""
+    courses = [[0.5, 1, 1, 0.5], [1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5], [0.75, 1.5, 0.75], [1, 1, 1]]
+    fill = {"level": 1.783, "unit_weight": 19.8, "between": [0.6642665272491222, 0.9309418123712654], "factor": 1.35}
+    live = {"body": [{"per_weight": [-1.35, -0.405]}]}
+    pattern = {"type": "running_bond", "block_length": 0.6, "block_height": 0.3, "courses": courses}
+    loads = {"gravity": [0, 0], "dead": {"fills": [fill]}, "live": live}
+    result, _ = answered(
+        load_method("la-associated"), assembly(pattern, 0.8, loads=loads, thickness=1.37, unit_weight=20.04)
+    )
+    assert (result.finding, result.multiplier) == (Finding.COLLAPSES, pytest.approx(0.0))
