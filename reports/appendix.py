@@ -108,7 +108,7 @@ def render(run: ComparisonRun) -> str:
             origin=Path(case.origin).name,
             digest=hashlib.sha256(document.encode()).hexdigest()[:16],
             finding=wall_findings(item),
-            advice=which_number(item),
+            advice=which_number(item, found.unanswered),
             found=found,
             direction=direction_in_words(item.case),
             facts=wall_summary(case),

@@ -91,7 +91,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         digest=_digest(rows),
         versions=run.provenance.get("versions", {}),
         glance=first,
-        summary=summary(run, None if first.governs is None else first.governs.item),
+        summary=summary(run) if first.governs is None else summary(run, first.governs.item, first.governs.unanswered),
         overview=dots.html(overview),
         overview_signs=dots.legend(overview, SIGNS),
         findings=tables.findings(run),

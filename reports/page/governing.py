@@ -34,7 +34,8 @@ class Way:
         name: in words.
         value: the least multiplier with its method, or what was found instead.
         proved: what is proved of it.
-        governs: whether no other has a lower one, or a lower residual one where the joints have strength.
+        governs: whether no other has a lower one, or a lower residual one where the joints have strength; of none while
+            another has no accepted answer.
         residual: the least multiplier without that strength; empty of dry joints.
     """
 
@@ -52,6 +53,7 @@ class Governing:
     Attributes:
         item: the load case with the lowest multiplier, the lowest residual one where the joints have strength.
         ways: all load cases.
+        unanswered: names of those without an accepted answer, any of which may govern.
         shown: the state that is drawn and whose forces stand in the tables; None without one.
         reactions: of the supports in that state.
         balance: part of the loads that the reactions do not balance; None without a state.
@@ -61,6 +63,7 @@ class Governing:
 
     item: CaseResults
     ways: list[Way]
+    unanswered: list[str]
     shown: Result | None
     reactions: list[SupportReaction]
     balance: float | None
@@ -80,16 +83,22 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
         items: its load cases, one or more.
         joints: number of most critical joints to list.
     """
-    item = min(items, key=_collapse)
-    lowest = _collapse(item)
+    sizes = [_collapse(item) for item in items]
+    known = [math.inf if size is None else size for size in sizes]
+    lowest = min(known)
+    item = items[known.index(lowest)]
     case, shown = item.case, _shown(item)
+    sure = lowest < math.inf and None not in sizes
     listed = [] if shown is None else reactions_of(case, shown)
     balance = None
     if shown is not None and listed:
         balance = out_of_balance(case.assembly, listed, shown.forces_multiplier or 0.0)
     return Governing(
         item=item,
-        ways=[_way(each, governs=lowest < math.inf and _collapse(each) <= lowest * (1.0 + EQUAL)) for each in items],
+        ways=[
+            _way(each, governs=sure and size <= lowest * (1.0 + EQUAL)) for each, size in zip(items, known, strict=True)
+        ],
+        unanswered=[_name(each) for each, size in zip(items, sizes, strict=True) if size is None],
         shown=shown,
         reactions=listed,
         balance=balance,
@@ -98,16 +107,25 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
     )
 
 
-def _collapse(item: CaseResults) -> float:
-    """The multiplier by which a load case governs: of joints with strength the residual one; infinite without any."""
+def _collapse(item: CaseResults) -> float | None:
+    """The multiplier by which a load case governs: of joints with strength the residual one.
+
+    Infinite where nothing makes the wall collapse; None without an accepted answer.
+    """
     if item.case.assembly.strong:
         found = least_residual(item)
-        return math.inf if found is None else found[0]
+        return None if found is None else found[0]
     least = least_known(item)
     if least is not None and least.multiplier is not None:
         return least.multiplier
-    falls = any(r.finding is Finding.FALLS and r.judge.accepted is not False for r in item.results)
-    return 0.0 if falls else math.inf
+    findings = {r.finding for r in item.results if r.status is Status.OK and r.judge.accepted is not False}
+    if Finding.FALLS in findings:
+        return 0.0
+    return math.inf if findings & {Finding.UNBOUNDED, Finding.STANDS} else None
+
+
+def _name(item: CaseResults) -> str:
+    return item.case.load_case or direction_in_words(item.case)
 
 
 def _way(item: CaseResults, *, governs: bool) -> Way:
@@ -115,8 +133,7 @@ def _way(item: CaseResults, *, governs: bool) -> Way:
     answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
     value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
     proved = "" if least is None else proof_of(item, least).label
-    name = item.case.load_case or direction_in_words(item.case)
-    return Way(name, value, proved, governs, _residual(item) if item.case.assembly.strong else "")
+    return Way(_name(item), value, proved, governs, _residual(item) if item.case.assembly.strong else "")
 
 
 def _residual(item: CaseResults) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,20 +62,21 @@ class Summary:
     red: list[RedRow]
 
 
-def summary(run: ComparisonRun, governs: CaseResults | None = None) -> Summary:
+def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: Sequence[str] = ()) -> Summary:
     """The sentences of a comparison: of one wall, or of a suite.
 
     Args:
         run: the comparison.
         governs: the load case that governs its only wall; None of several walls.
+        unanswered: names of load cases of that wall without an accepted answer.
     """
     items = [item for item in run.cases if not shapes.problem(item.case)]
     found, missed = _broken_theory(run)
     governing = governs or (items[0] if len(run.cases) == len(items) == 1 else None)
-    advice = "" if governing is None else which_number(governing)
+    advice = "" if governing is None else which_number(governing, unanswered)
     if governing is None:
         found.extend(_suite(items))
-    elif not advice:
+    elif least_known(governing) is None:
         found.append(wall_findings(governing))
     return Summary([*found, *missed], advice, _red_rows(run))
 
@@ -214,17 +216,24 @@ def _mechanisms(item: CaseResults) -> str:
     return f"the mechanisms of {names} differ"
 
 
-def which_number(item: CaseResults) -> str:
-    """Which multiplier to use for what, with the case's own numbers."""
+def which_number(item: CaseResults, unanswered: Sequence[str] = ()) -> str:
+    """Which multiplier to use for what, with the case's own numbers; none while a load case may govern unknown."""
     least, associated = least_known(item), item.associated
+    lead, doubt = "For safety use", ""
+    if unanswered and item.case.load_case:
+        lead = "The least of the others is"
+        doubt = (
+            f"Which load case governs is not known: there is no accepted answer to {first_few(list(unanswered), 6)}."
+        )
     if least is None:
-        return ""
+        return doubt
     value = numbers.multiplier(least.multiplier)
     proof = proof_of(item, least)
     under = f" in load case {item.case.load_case}" if item.case.load_case else ""
     known = f"{value} ({least.method}){under}, {proof.label}: {proof.clause}."
-    brittle = _without_strength(item)
-    sentences = [f"{brittle} With its strength: {known}" if brittle else f"For safety use {known}"]
+    brittle = _without_strength(item, lead)
+    sentences = [doubt] * bool(doubt)
+    sentences.append(f"{brittle} With its strength: {known}" if brittle else f"{lead} {known}")
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding.has_multiplier:
         sentences.append(
@@ -237,13 +246,13 @@ def which_number(item: CaseResults) -> str:
     return " ".join(sentences)
 
 
-def _without_strength(item: CaseResults) -> str:
+def _without_strength(item: CaseResults, lead: str) -> str:
     """The number to use for joints with cohesion or tensile strength, which are brittle in mortar; empty for others."""
     found = least_residual(item)
     if found is None or not math.isfinite(found[0]):
         return ""
     return (
-        f"For safety use {numbers.multiplier(found[0])} ({found[1].method}), the residual multiplier: mortar is "
+        f"{lead} {numbers.multiplier(found[0])} ({found[1].method}), the residual multiplier: mortar is "
         "brittle, and this is the wall without its cohesion and tensile strength."
     )
 

@@ -13,7 +13,7 @@ import drystone
 from harness.model.comparison import CaseResults, Certified, ComparisonRun
 from harness.model.live_load import both_signs, with_live_load
 from harness.model.load_cases import load_cases_of
-from harness.model.method import Finding
+from harness.model.method import Finding, Status
 from harness.model.result import Result
 from reports.charts import curves, dots
 from reports.charts.overview import overview_plot, wall_plot
@@ -23,6 +23,7 @@ from reports.findings.agreement import agreement
 from reports.labels import numbers
 from reports.page.glance import glance, headline, largest_walls, mechanisms_compared, pictures
 from reports.page.governing import governing
+from reports.page.summary import summary
 from tests.reports import samples
 from tests.walls import stack, wall_data
 
@@ -155,6 +156,26 @@ def test_a_wall_that_falls_in_one_load_case_is_governed_by_it():
     assert found.item is falls
     assert [way.governs for way in found.ways] == [False, True]
     assert found.ways[1].value == "falls under its dead load"
+
+
+def test_no_load_case_governs_while_another_has_no_accepted_answer():
+    """A number that is safe by one load case is not safe: the terminal says so, and so does the first screen."""
+    lost, borne = own(0.3, "snow"), own(0.4, "floor")
+    nothing = {"finding": Finding.NONE, "status": Status.NOT_CONVERGED, "multiplier": None}
+    lost.results[:] = [result.model_copy(update=nothing) for result in lost.results]
+    borne.results[:] = [
+        result.model_copy(update={"finding": Finding.UNBOUNDED, "multiplier": None}) for result in borne.results
+    ]
+    found = governing([own(0.2, "wind"), lost, borne])
+    assert [way.governs for way in found.ways] == [False] * 3
+    assert found.unanswered == ["snow"]
+    said = summary(run_of(own(0.2, "wind"), lost, borne), found.item, found.unanswered).advice
+    assert said.startswith(
+        "Which load case governs is not known: there is no accepted answer to snow. The least of the others is 0.20000 "
+        "(la) in load case wind"
+    )
+    assert "For safety" not in said
+    assert governing([own(0.2, "wind"), borne]).unanswered == []
 
 
 def test_what_would_change_the_number_is_a_command_that_fits_the_wall():
