@@ -12,9 +12,11 @@ import pytest
 import drystone
 from harness.model.build import build
 from harness.model.errors import InputError
+from harness.model.fill import highest_faces
 from harness.model.load_cases import named_loads, under_load_case
 from harness.model.load_fields import Load
 from harness.model.method import Finding
+from harness.model.pressure import Outlines
 from harness.model.reading import parse_wall
 from harness.model.travelling import upward_faces
 from harness.model.wall import Wall
@@ -255,6 +257,14 @@ def test_fault_of_a_combination_is_told_at_its_place():
     with pytest.raises(InputError, match="the live load puts no force") as caught:
         drystone.build_wall(document)
     assert caught.value.element == "combinations.none"
+
+
+def test_so_many_faces_above_each_other_that_they_take_minutes_are_refused():
+    count = 40_000
+    shift = np.arange(count) / count
+    ends = [np.column_stack([shift + right, shift]) for right in (1.0, 0.0)]
+    with pytest.raises(InputError, match="40,000 faces that look up lie above each other"):
+        highest_faces(Outlines(ends[0], ends[1], np.arange(count)))
 
 
 def test_loads_of_a_load_case_stay_as_they_are_without_factors():
