@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from drystone.reactions import moving_blocks, one_alone, reactions
+from drystone.reactions import moving_blocks, one_alone, proved_extremes
 from drystone.released_supports import OtherSupports, ReleasedWall, released
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
@@ -99,13 +99,12 @@ def held_reactions(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple
     assembly, method = wall.assembly, load_method("de")
     still = replace(assembly, live=np.zeros_like(assembly.live), support_motion=np.zeros_like(assembly.support_motion))
     check_takes(method, still)
-    extremes = reactions(wall, runs=runs)
-    if isinstance(extremes, str):
-        return extremes
-    ends = (extremes[0].value, extremes[1].value)
+    ends = proved_extremes(wall, runs=runs)
+    if isinstance(ends, str):
+        return ends
     if alone := one_alone(assembly, *ends):
         return alone
-    result = runs.result(OtherSupports(wall.case, "at rest", still), "de", settings)
+    result = runs.result(OtherSupports(wall.case, still), "de", settings)
     if result.finding is not Finding.STANDS or result.forces is None or not result.judge.accepted:
         return f"Distinct elements do not hold the wall on supports at rest: {result.sentence}"
     beyond = bar_tensions(still, result)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +20,7 @@ from harness.engine.plan import check_methods, check_taken
 from harness.engine.run import Limits
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
+from harness.model.content import exact_hash_of
 from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.live_load import with_live_load
 from harness.model.load_cases import load_cases_of, named_loads_of
@@ -133,9 +133,8 @@ class CombinedWall:
 
     @property
     def content(self) -> str:
-        """Hash of the wall, its loads and the direction."""
-        contents = " ".join(case.content for case in self.pair.cases)
-        return hashlib.sha256(f"{contents} {self.x!r} {self.y!r}".encode()).hexdigest()
+        """Hash of the assembly."""
+        return exact_hash_of(self.assembly)
 
     @cached_property
     def assembly(self) -> Assembly:

@@ -15,9 +15,8 @@ from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_reaction
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions, with_bars_as_joints
-from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
-from harness.model.method import Finding
+from harness.model.followed import DrivenWall
 from harness.model.passive import FILL
 from harness.model.result import Judgement, Result, fastest_vertex
 from harness.model.units import DIMENSIONLESS
@@ -73,27 +72,39 @@ def reactions(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = Runs()) -> tu
     for greatest in (False, True):
         word = partial(_word, greatest=greatest, within=tolerance)
         result = runs.result(wall.case, "la-reaction", {"greatest": greatest}, word)
-        if result.finding is not Finding.STANDS:
+        driven = DrivenWall.of(result.details, assembly)
+        if driven is None:
             return result.sentence
-        value, forces, tensions, mechanism = _parts(result)
-        found.append(Reaction(value, forces, tensions, mechanism, moving_blocks(assembly, mechanism), result.judge))
+        moving = moving_blocks(assembly, driven.mechanism)
+        found.append(Reaction(driven.reaction, driven.forces, driven.tensions, driven.mechanism, moving, result.judge))
     return found[0], found[1]
-
-
-def _parts(result: Result) -> tuple[float, FloatArray, FloatArray, FloatArray]:
-    """Reaction, forces (m, 3), tensions (k,) and mechanism (n, 3) of an answer of `la-reaction`."""
-    said = AnswerDetails(result.details)
-    fields = (result.forces, said.bar_tensions(), said.driven_mechanism)
-    forces, tensions, mechanism = (np.array(each, dtype=float) for each in fields)
-    return said.reaction, forces, tensions, mechanism
 
 
 def _word(assembly: Assembly, result: Result, tolerance: float, *, greatest: bool, within: float) -> Judgement:
     """The word of the judge, with a tolerance other than that of the method."""
-    if result.finding is not Finding.STANDS:
+    driven = DrivenWall.of(result.details, assembly)
+    if driven is None:
         return judge(assembly, result, tolerance)
-    value, forces, tensions, mechanism = _parts(result)
-    return judge_reaction(assembly, value, forces, mechanism, greatest=greatest, tolerance=within, tensions=tensions)
+    return judge_reaction(
+        assembly,
+        driven.reaction,
+        driven.forces,
+        driven.mechanism,
+        greatest=greatest,
+        tolerance=within,
+        tensions=driven.tensions,
+    )
+
+
+def proved_extremes(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = Runs()) -> tuple[float, float] | str:
+    """The values of `reactions`, where the judge accepts both; or why there are none. Arguments and errors as there."""
+    extremes = reactions(wall, tolerance, runs=runs)
+    if isinstance(extremes, str):
+        return extremes
+    rejected = [each.judgement.sentence for each in extremes if not each.judgement.accepted]
+    if rejected:
+        return f"The judge rejects an extreme reaction with associated flow: {rejected[0]}"
+    return extremes[0].value, extremes[1].value
 
 
 def reaction_unit(wall: Wall) -> str:
@@ -166,10 +177,10 @@ def least_known_reactions(
     Raises:
         InputError: no support with a joint moves, or the supports do not move as one rigid body.
     """
-    extremes = reactions(wall, tolerance, runs=runs)
+    extremes = proved_extremes(wall, tolerance, runs=runs)
     if isinstance(extremes, str):
         return extremes
-    assembly, (low, high) = wall.assembly, (each.value for each in extremes)
+    assembly, (low, high) = wall.assembly, extremes
     if alone := one_alone(assembly, low, high):
         return alone
     found: list[Reaction] = []

@@ -9,7 +9,6 @@ their judge are those of any wall with props and ties (`harness.model.bars`).
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -22,6 +21,7 @@ from harness.engine.pipeline import Runs
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.bars import Bars
 from harness.model.case import Case
+from harness.model.content import exact_hash_of
 from harness.model.errors import InputError
 from harness.model.result import Result, vertex_velocities
 
@@ -35,12 +35,10 @@ class OtherSupports:
 
     Attributes:
         case: the wall as it is described.
-        change: what is other of its supports, with all digits.
-        assembly: the wall so.
+        assembly: the wall with its supports so.
     """
 
     case: Case
-    change: str
     assembly: Assembly
 
     @property
@@ -50,8 +48,8 @@ class OtherSupports:
 
     @property
     def content(self) -> str:
-        """Hash of the wall and the change."""
-        return hashlib.sha256(f"{self.case.content} {self.change}".encode()).hexdigest()
+        """Hash of the assembly."""
+        return exact_hash_of(self.assembly)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -66,19 +64,15 @@ class ReleasedWall:
     Attributes:
         assembly: of it: the joints of the wall in their order, its bars and then those that guide.
         carrier: index of the guided block; moving: indices of the supports that it stands for.
-        reaction, greatest: as of `released`.
     """
 
     assembly: Assembly
     carrier: int
     moving: IntArray
-    reaction: float
-    greatest: bool
 
     def result(self, case: Case, method: str, settings: Mapping[str, Any], runs: Runs) -> Result:
         """The judged answer of a method, whose multiplier is how far the reaction has changed."""
-        sense = "pushing" if self.greatest else "giving way"
-        wall = OtherSupports(case, f"released {sense} at {self.reaction!r}", self.assembly)
+        wall = OtherSupports(case, self.assembly)
         return runs.result(wall, method, settings, partial(judge, quantity="change of the reaction"))
 
     def holds(self, tensions: FloatArray) -> bool:
@@ -152,7 +146,7 @@ def released(assembly: Assembly, reaction: float, greatest: bool) -> ReleasedWal
         support_motion=np.zeros((assembly.n_blocks + 1, 3)),
         bars=guided,
     )
-    return ReleasedWall(wall, carrier, moving, reaction, greatest)
+    return ReleasedWall(wall, carrier, moving)
 
 
 def _check_rigid(assembly: Assembly, moving: IntArray, motion: FloatArray) -> None:

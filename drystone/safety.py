@@ -6,7 +6,6 @@ the loads as they are (Zienkiewicz, Humpheson and Lewis 1975; Dawson, Roth and D
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -22,6 +21,7 @@ from harness.engine.plan import check_methods, check_taken, takers
 from harness.engine.run import Limits
 from harness.model.assembly import Assembly
 from harness.model.case import Case
+from harness.model.content import exact_hash_of
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
 from harness.model.method import Finding, Status
@@ -55,8 +55,8 @@ class ReducedWall:
 
     @property
     def content(self) -> str:
-        """Hash of the wall, the factor and the share."""
-        return hashlib.sha256(f"{self.case.content} {self.factor!r} {self.share!r}".encode()).hexdigest()
+        """Hash of the assembly."""
+        return exact_hash_of(self.assembly)
 
     @cached_property
     def assembly(self) -> Assembly:

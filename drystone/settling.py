@@ -152,14 +152,14 @@ def run_followed(
 
     def word(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
         nonlocal said
-        states = FollowedWall.of(result.details)
+        states = FollowedWall.of(result.details, assembly)
         if states is None:
             return judge(assembly, result, tolerance)
         said = judge_states(assembly, states)
         return judged_as_one(said)
 
     result = runs.result(wall.case, method, settings, word)
-    states = FollowedWall.of(result.details)
+    states = FollowedWall.of(result.details, wall.assembly)
     return result.sentence if states is None else (states, said)
 
 

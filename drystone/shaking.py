@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -223,27 +224,27 @@ class Shaker:
         motion = self.motion.times(multiple)
         moves = {"time": motion.time.tolist(), "first": motion.first.tolist(), "last": motion.last.tolist()}
         settings = self.steps.model_dump(mode="json") | moves | {"gravity": self._in_lengths}
-        result = self._runs.result(self.wall.case, "de-time", settings, _word)
-        found = ShakenWall.of(result.details)
+        result = self._runs.result(self.wall.case, "de-time", settings, partial(_word, moves_until=motion.duration))
+        found = ShakenWall.of(result.details, self.wall.assembly)
         if found is None:
             still = np.zeros((1, self.wall.assembly.n_blocks, 3))
             return Shaking(
                 self.wall, motion, self.gravity, Finding.NONE, np.zeros(1), still, (), False,
                 math.nan, result.judge, "", math.nan, result.sentence,
             )  # fmt: skip
-        fallen = tuple(self.wall.assembly.block_ids[i] for i in found.fallen.tolist())
+        fallen = tuple(self.wall.assembly.block_ids[i] for i in np.flatnonzero(found.fallen))
         return Shaking(
             self.wall, motion, self.gravity, result.finding, found.time, found.places, fallen, found.at_rest,
             math.nan if found.energy is None else found.energy, result.judge, found.engine, found.impact,
         )  # fmt: skip
 
 
-def _word(assembly: Assembly, result: Result, tolerance: float) -> Judgement:
+def _word(assembly: Assembly, result: Result, tolerance: float, *, moves_until: float) -> Judgement:
     """The word of the judge on the motion, where there is one."""
-    found = ShakenWall.of(result.details)
+    found = ShakenWall.of(result.details, assembly)
     if found is None:
         return judge(assembly, result, tolerance)
-    return judge_time_history(assembly, result.finding, found.time, found.places, found.at_rest, tolerance)
+    return judge_time_history(assembly, result.finding, found.time, found.places, found.at_rest, moves_until, tolerance)
 
 
 def _check(wall: Wall) -> None:

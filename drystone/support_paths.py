@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drystone.reactions import moving_blocks, reactions
+from drystone.reactions import moving_blocks, proved_extremes
 from drystone.walls import Wall
 from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
@@ -120,15 +120,14 @@ def reaction_paths(
             "the path takes no ties, props and passive fill", "Ask for the two reactions alone, or leave them out"
         )
     check_takes(method, replace(assembly, support_motion=np.zeros_like(assembly.support_motion)))
-    extremes = reactions(wall, runs=runs)
-    if isinstance(extremes, str):
-        return extremes
-    ends = (extremes[0].value, extremes[1].value)
+    ends = proved_extremes(wall, runs=runs)
+    if isinstance(ends, str):
+        return ends
     found: list[ReactionPath] = []
     for gives_way in (True, False):
         word = partial(_word, gives_way=gives_way, extremes=ends)
         result = runs.result(wall.case, FOLLOWS[by], settings | {"gives_way": gives_way}, word)
-        path = SupportPath.of(result.details)
+        path = SupportPath.of(result.details, assembly)
         if path is None:
             return result.sentence
         found.append(
@@ -154,14 +153,12 @@ def _word(
     assembly: Assembly, result: Result, tolerance: float, *, gives_way: bool, extremes: tuple[float, float]
 ) -> Judgement:
     """The word of the judge on the constant reaction, where there is one."""
-    path = SupportPath.of(result.details)
+    path = SupportPath.of(result.details, assembly)
     if path is None or path.mechanism is None:
         return judge(assembly, result, tolerance)
     return judge_plateau(
         assembly,
-        float(path.reaction[-1]),
-        path.forces,
-        path.mechanism,
+        path,
         gives_way=gives_way,
         tolerance=tolerance,
         extremes=extremes,

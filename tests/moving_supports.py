@@ -8,6 +8,7 @@ import numpy as np
 
 import drystone
 from drystone.support_paths import ReactionPath
+from harness.model.followed import SupportPath
 
 
 def semicircle(thickness: float, voussoirs: int, friction: float) -> drystone.Wall:
@@ -85,3 +86,17 @@ def both(found: tuple[ReactionPath, ReactionPath] | str) -> tuple[ReactionPath, 
 def values(found: tuple[ReactionPath, ReactionPath]) -> list[float]:
     """The constant reactions."""
     return [float(each.reaction[-1]) for each in found]
+
+
+def path_of(found: ReactionPath) -> SupportPath:
+    """The path of which something was found, as its method gives it and the judge has it."""
+    return SupportPath(
+        found.displacement,
+        found.reaction,
+        np.array(found.slipping),
+        np.array(found.opened),
+        found.forces,
+        found.mechanism,
+        found.constant_from,
+        found.reason,
+    )

@@ -51,7 +51,7 @@ from harness.engine.bar_checks import tensions_beyond
 from harness.engine.brittle_checks import listed, motion_of_whole
 from harness.engine.judge_breaking import judge_breaking
 from harness.engine.judge_dead_load import judge_fall, judge_limit
-from harness.engine.judge_decision import COUNTABLE, NO_FORCES, apart, beyond_prestress, countable, decide, said_of
+from harness.engine.judge_decision import NO_FORCES, apart, beyond_prestress, countable, decide, said_of
 from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import (
     collapse_residuals,
@@ -65,6 +65,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import Bars
 from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
+from harness.model.followed import COUNTABLE
 from harness.model.method import Finding, Method, Status
 from harness.model.method_registry import check_takes
 from harness.model.result import Judgement, Result, bracket_is_wide, plastic_of, residual_of, result_of

@@ -9,10 +9,10 @@ import numpy as np
 from harness.engine.bar_checks import tensions_beyond
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import BAR_FORCES
+from harness.model.followed import COUNTABLE
 from harness.model.result import Judgement, Result
 
-COUNTABLE = 1e100
-"""Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
+UNCOUNTABLE = f"Its numbers are not finite, or larger than {COUNTABLE:g}."
 NO_FORCES = "It gives no contact forces, so it cannot be checked."
 
 

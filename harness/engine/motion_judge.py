@@ -8,6 +8,7 @@ supports           displacement of a support, in the frame of the ground
 interpenetration   common area of two blocks over the shorter outline where a wall stands in the end
 overlap            the same in fifty states, until a block has fallen
 unsettled          motion of a standing wall in the last twentieth of its time
+early              time for which the ground moves on, over that for which it moves; none where a block lies below
 fallen             1 if a block of a standing wall has tipped over or dropped off, or if none has of a fallen one
 lifted             1 if a fallen wall that still moves has more potential energy than as drawn, and no block lies below
                    all supports
@@ -34,7 +35,13 @@ TIPPED = 0.5
 
 
 def judge_time_history(
-    assembly: Assembly, finding: Finding, time: FloatArray, places: FloatArray, at_rest: bool, tolerance: float = 1e-3
+    assembly: Assembly,
+    finding: Finding,
+    time: FloatArray,
+    places: FloatArray,
+    at_rest: bool,
+    moves_until: float,
+    tolerance: float = 1e-3,
 ) -> Judgement:
     """Whether the places of the blocks show what was found.
 
@@ -43,7 +50,8 @@ def judge_time_history(
         finding: that it stands or falls; of anything else nothing is judged.
         time: (k,) of the states [s].
         places: (k, n, 3) displacements of the centroids [length] and rotations [rad].
-        at_rest: whether all motion is said to have died.
+        at_rest: whether all motion is said to have died; a wall that stands has to be at rest.
+        moves_until: time at which the ground comes to rest [s].
         tolerance: the largest residual that is acceptable; contacts of the engine overlap by 1e-5.
     """
     if finding not in (Finding.STANDS, Finding.FALLS):
@@ -65,13 +73,15 @@ def judge_time_history(
     }
     if finding is Finding.STANDS:
         residuals["interpenetration"] = _overlap(carried(assembly, end)) / size
-    if at_rest:
+    outlines = carried(assembly, end)
+    ground = min(outlines[i][:, 1].min() for i in np.flatnonzero(assembly.fixed))
+    below = any(outlines[i][:, 1].max() < ground for i in assembly.free)
+    if not below:
+        residuals["early"] = max(0.0, moves_until - float(time[-1])) / moves_until
+    if at_rest or finding is Finding.STANDS:
         late = places[time >= 0.95 * time[-1]]
         residuals["unsettled"] = float((abs(late - end) * [1.0, 1.0, size]).max()) / size
     elif finding is Finding.FALLS:
-        outlines = carried(assembly, end)
-        ground = min(outlines[i][:, 1].min() for i in np.flatnonzero(assembly.fixed))
-        below = any(outlines[i][:, 1].max() < ground for i in assembly.free)
         higher = float(np.sum(assembly.weight[assembly.free] * end[assembly.free, 1])) > 0.0
         residuals["lifted"] = float(higher and not below)
     within = {"overlap": max(OVERLAP, tolerance)}

@@ -15,6 +15,7 @@ from harness.engine.run import Analysed, Judge, Limits, Run
 from harness.engine.verdict import compare, overall
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
+from harness.model.followed import check_followed
 from harness.model.result import Judgement, Result
 
 if TYPE_CHECKING:
@@ -215,3 +216,11 @@ def _fits(run: Run, result: Result) -> None:
                 "Repeat the run with --fresh",
                 f"the stored result of {run.method} on {run.case.id}",
             )
+    try:
+        check_followed(result.details, run.case.assembly)
+    except ValueError as error:
+        raise InputError(
+            f"its details cannot be used: {error}",
+            "Repeat the run with --fresh",
+            f"the stored result of {run.method} on {run.case.id}",
+        ) from None

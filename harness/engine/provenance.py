@@ -7,9 +7,11 @@ import hashlib
 import importlib.util
 import os
 import platform
+import re
 import subprocess
-from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from importlib.metadata import EntryPoint, PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -30,18 +32,21 @@ PACKAGES = (
     "pymunk",
     "shapely",
     "pydantic",
+    "pyb2d3",
+    "pyscipopt",
+    "discopt",
+    "pounce-solver",
+    "openseespy",
+    "compas_cra",
+    "compas_lmgc90",
 )
+"""Packages of which an answer of Drystone's own methods may be made."""
 
 
 @functools.cache
 def versions() -> dict[str, str]:
     """Versions of Python, of the packages that compute, and the commit where the code is a checkout."""
-    found = {"python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
+    found = {"python": platform.python_version()} | _installed(PACKAGES)
     commit = _commit()
     if commit:
         found["commit"] = commit
@@ -82,7 +87,8 @@ def machine() -> dict[str, Any]:
 def code_version(method: str) -> str:
     """Hash over the sources a method's answer depends on: its own package and the model, and the packages beneath.
 
-    Of a program they are the files that its command names.
+    Of a program they are the files that its command names. Of a method of another distribution the versions of that and
+    of what it requires stand for what is no source in Python.
 
     Raises:
         KeyError: no method has this name.
@@ -94,8 +100,27 @@ def code_version(method: str) -> str:
     if point is None:
         raise KeyError(method)
     packages = sorted({point.module.split(".")[0], "harness.model"})
-    others = [f"{name}={number}" for name, number in sorted(versions().items()) if name not in ("commit", "drystone")]
+    own = {name: number for name, number in versions().items() if name not in ("commit", "drystone")}
+    others = [f"{name}={number}" for name, number in sorted((own | brought_with(point)).items())]
     return _sources_version(*packages, others=others)
+
+
+def brought_with(point: EntryPoint) -> dict[str, str]:
+    """Versions of another distribution that brings a method, and of what it requires; of Drystone nothing."""
+    brings = point.dist
+    if brings is None or brings.name == "drystone":
+        return {}
+    required = [found[0] for text in brings.requires or () if (found := re.match(r"[\w.-]+", text))]
+    return _installed(required) | {brings.name: brings.version}
+
+
+def _installed(packages: Iterable[str]) -> dict[str, str]:
+    """Versions of those packages that are installed."""
+    found = {}
+    for package in packages:
+        with suppress(PackageNotFoundError):
+            found[package] = version(package)
+    return found
 
 
 def _sources_version(*packages: str, others: Sequence[str] = ()) -> str:

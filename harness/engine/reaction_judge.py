@@ -11,9 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from harness.engine.bar_checks import dissipated_by_bars
+from harness.engine.judge_decision import UNCOUNTABLE, countable, said_of
 from harness.engine.judge_law import beyond_lift, dissipated_by_friction, dissipated_by_strength
 from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.followed import SupportPath
 from harness.model.result import Judgement, fastest_vertex, relative_velocities
 
 
@@ -39,6 +41,8 @@ def judge_reaction(
     """
     bars = assembly.bars
     tensions = bars.prestress if tensions is None else tensions
+    if not all(countable(each) for each in (reaction, forces, mechanism, tensions)):
+        return said_of(tolerance, False, UNCOUNTABLE)
     beyond_prestress = tensions - bars.prestress if len(bars) else None
     sense = -1.0 if greatest else 1.0
     work = work_scale(assembly, reaction)
@@ -59,9 +63,7 @@ def judge_reaction(
 
 def judge_plateau(
     assembly: Assembly,
-    reaction: float,
-    forces: FloatArray,
-    mechanism: FloatArray,
+    path: SupportPath,
     *,
     gives_way: bool,
     tolerance: float,
@@ -76,12 +78,17 @@ def judge_plateau(
 
     Args:
         assembly: the wall with its `support_motion`, without ties and props.
-        reaction: work R on the motion of the supports; extremes: least and greatest R of associated flow.
-        forces: (m, 3) contact forces [force]; mechanism: (n, 3) motion of all blocks.
+        path: of the reaction R, with its mechanism and the displacement from which it is said to be constant.
         gives_way: whether the supports move as prescribed; else backwards.
         tolerance: the largest residual that is acceptable.
+        extremes: least and greatest R of associated flow.
     """
-    sense = 1.0 if gives_way else -1.0
+    forces, mechanism, begins = path.forces, path.mechanism, path.constant_from
+    if mechanism is None or begins is None:
+        return said_of(tolerance, None, "Its reaction is not said to be constant.")
+    if not all(countable(each) for each in (path.reaction, forces, mechanism)):
+        return said_of(tolerance, False, UNCOUNTABLE)
+    sense, reaction, constant = 1.0 if gives_way else -1.0, float(path.reaction[-1]), path.displacement >= begins
     work = work_scale(assembly, reaction)
     opening, slip = relative_velocities(assembly, mechanism)
     opening = beyond_lift(assembly, opening, slip, "non-associated")
@@ -93,6 +100,8 @@ def judge_plateau(
         "reaction": abs(power(block_sums(assembly, forces), assembly.support_motion) - reaction) / work,
         "virtual_work": abs(sense * (power(assembly.dead, mechanism) - taken) - reaction) / work,
         "extremes": max(0.0, low - reaction, reaction - high) / work,
+        "constant": float(abs(path.reaction[constant] - reaction).max(initial=0.0)) / work,
+        "plateau": float(not (begins >= 0.0 and constant.any())),
     }
     return held(residuals, tolerance, "Forces and mechanism of the constant reaction were")
 

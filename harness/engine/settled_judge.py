@@ -11,6 +11,7 @@ interpenetration   depth by which blocks share area, or by which a joint has clo
 parted             normal force at an end that has parted, beside the mean weight of a block
 sliding            distance along a joint of the two points of a contact
 lifted             distance across the joint of an end that bore force where the wall last stood
+further            distance from where the wall last bore a load to where it falls, of a collapse that goes on
 closings           closing velocity at a contact, beyond dilatant flow
 """
 
@@ -23,11 +24,12 @@ import shapely
 from numpy.typing import NDArray
 
 from harness.engine.judge_dead_load import GAIN, IMMENSE
-from harness.engine.judge_decision import COUNTABLE, countable, said_of
+from harness.engine.judge_decision import UNCOUNTABLE, countable, said_of
 from harness.engine.judge_law import beyond_lift
 from harness.engine.reaction_judge import held
 from harness.engine.residuals import block_sums, force_residuals, power
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from harness.model.displaced import carried
 from harness.model.followed import FollowedWall
 from harness.model.geometry import shapes_of
 from harness.model.limit import gross_power
@@ -35,9 +37,11 @@ from harness.model.result import Judgement, fastest_vertex, relative_velocities
 
 _MEETS = 1e-9
 """Distance, in sizes of a block, up to which the two points of an end meet: pins are closed to 1e-13."""
-_UNCOUNTABLE = f"Its numbers are not finite, or larger than {COUNTABLE:g}."
 _DEPTH = 1e-9
 """Depth of a common area, in sizes of a block, that is rounding of places."""
+_FURTHER = 1e-4
+"""Distance, in sizes of a block, within which a collapse that goes on ends: a proof of the fall takes 1e-7, and from
+further away the last multiplier is not zero to three digits of the first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +85,19 @@ def judge_every_state(assembly: Assembly, states: FollowedWall, tolerance: float
             states.places, states.value.tolist(), states.forces, states.mechanisms, strict=True
         )
     ]
-    return (*said, *_judge_end(assembly, states, 0.0, tolerance))
+    return (*said, *(_no_further(assembly, states, fall) for fall in _judge_end(assembly, states, 0.0, tolerance)))
+
+
+def _no_further(assembly: Assembly, states: FollowedWall, fall: Judgement) -> Judgement:
+    """What is said of a fall, which has to lie a hair beyond the last state."""
+    assert states.fallen is not None
+    ways = zip(carried(assembly, states.places[-1]), carried(assembly, states.fallen), strict=True)
+    further = max(float(abs(there - here).max()) for here, there in ways) / assembly.length_scale
+    if further <= _FURTHER:
+        return fall
+    sentence = f"{fall.sentence} The last state lies {further:.3g} sizes of a block before, at most {_FURTHER:g} do."
+    update = {"residuals": fall.residuals | {"further": further}, "accepted": False, "sentence": sentence}
+    return fall.model_copy(update=update)
 
 
 def states_in_words(said: tuple[Judgement, ...]) -> str:
@@ -128,7 +144,7 @@ def judge_settled(
         tolerance: the largest residual that is acceptable.
     """
     if not all(countable(each) for each in (displacement, places, reaction, forces)):
-        return said_of(tolerance, False, _UNCOUNTABLE)
+        return said_of(tolerance, False, UNCOUNTABLE)
     moved = _put_together(assembly, displacement, places)
     wall = moved.assembly
     parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
@@ -163,7 +179,7 @@ def judge_moved_collapse(
         tolerance: the largest residual that is acceptable.
     """
     if not all(countable(each) for each in (places, multiplier, forces, mechanism)):
-        return said_of(tolerance, False, _UNCOUNTABLE)
+        return said_of(tolerance, False, UNCOUNTABLE)
     moved = _put_together(assembly, 0.0, places)
     wall = moved.assembly
     parted = float(abs(np.where(moved.meets, 0.0, forces[:, :2])).max(initial=0.0))
@@ -171,13 +187,13 @@ def judge_moved_collapse(
     opening, slip = relative_velocities(wall, motion)
     beyond = beyond_lift(wall, opening, slip)
     live = power(wall.live, motion)
-    bears = -power(wall.dead, motion) / live if live > 0.0 else np.inf
+    bears = -power(wall.dead, motion) / live if live > 0.0 else None
     residuals = moved.residuals | force_residuals(wall, forces, multiplier)
     residuals |= {
         "parted": parted * assembly.n_free / assembly.force_scale,
         "moving_supports": fastest_vertex(wall, np.where(wall.fixed[:, None], motion, 0.0)),
         "closings": max(0.0, float(np.where(moved.meets, -beyond, 0.0).max(initial=0.0))),
-        "virtual_work": abs(bears - multiplier) / max(assembly.load_unit, abs(multiplier)),
+        "virtual_work": 1.0 if bears is None else abs(bears - multiplier) / max(assembly.load_unit, abs(multiplier)),
     }
     return held(residuals, tolerance, "Places, forces and mechanism were")
 
@@ -199,7 +215,7 @@ def judge_settled_fall(
         bore: (m, 3) contact forces where it last stood; blocks lifted off what bore them fall anywhere.
     """
     if not all(countable(each) for each in (displacement, places, mechanism, bore)):
-        return said_of(tolerance, False, _UNCOUNTABLE)
+        return said_of(tolerance, False, UNCOUNTABLE)
     moved = _put_together(assembly, displacement, places)
     wall = moved.assembly
     borne = bore[:, :2] * assembly.n_free > tolerance * assembly.force_scale

@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
+from harness.model.followed import check_followed
 from harness.model.method import Answer, Finding, Status
 
 DEEPEST = 33
@@ -237,6 +238,10 @@ def _details(value: Any, assembly: Assembly) -> dict[str, Any]:
         raise AnswerFault(f'The method\'s details have no "{place}" that can be used: {fault["msg"]}.') from None
     if known.displaced_state is not None and not _fits(known.displaced_state, assembly):
         raise AnswerFault("The method's displaced state does not fit the blocks and interfaces of the wall.")
+    try:
+        check_followed(details, assembly)
+    except ValueError as error:
+        raise AnswerFault(f"The method's details cannot be used: {error}.") from None
     return details
 
 

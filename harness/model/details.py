@@ -20,10 +20,6 @@ DEAD_BAR_FORCES = "dead_bar_forces"
 """The same beside the `dead_forces` of a wall at its limit."""
 MOVING_FORCES = "moving_forces"
 """Name under which an answer's details hold the (m, 3) contact forces that were measured with its mechanism [force]."""
-REACTION = "reaction"
-"""Name under which an answer's details hold a reaction: the work of the wall on the motion of its supports."""
-DRIVEN = "driven_mechanism"
-"""The (n, 3) motion of all blocks that belongs to it, with the supports as prescribed or backwards."""
 MISSING_PACKAGE = "missing_package"
 """Detail of a refusal, true where a package is not installed that an extra brings."""
 
@@ -177,16 +173,6 @@ class AnswerDetails:
     def dilatant_mechanism(self) -> Any:
         """Of falls and walls at their limit: (n, 3) velocities of a mechanism with associated flow."""
         return self.data.get("dilatant_mechanism")
-
-    @property
-    def reaction(self) -> Any:
-        """Of reactions of supports: its value, the work of the wall on the motion of its supports."""
-        return self.data.get(REACTION)
-
-    @property
-    def driven_mechanism(self) -> Any:
-        """Of reactions of supports: (n, 3) motion of all blocks, the supports as prescribed or backwards."""
-        return self.data.get(DRIVEN)
 
     @property
     def moving_forces(self) -> Any:

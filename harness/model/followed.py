@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from harness.model.assembly import BoolArray, FloatArray, IntArray
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.method import Answer, Finding, Status
 
+COUNTABLE = 1e100
+"""Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
+_KINDS = {"FloatArray": "iuf", "IntArray": "iu", "BoolArray": "b"}
+"""Kinds of NumPy's types that an array may have, by its annotation."""
+_PLAIN: dict[str, tuple[type, ...]] = {"float": (int, float), "bool": (bool,), "str": (str,)}
+"""Types that another value may have, by its annotation."""
 
+
+@dataclass(frozen=True, eq=False)
 class InDetails:
-    """What details of an answer hold under its name: arrays, numbers, texts, and None for what there is not."""
+    """What details of an answer hold under its name: arrays, numbers, texts, and None for what there is not.
+
+    The first of its arrays ascends.
+    """
 
     NAME: ClassVar[str]
+    SHAPES: ClassVar[dict[str, str]]
+    """Axes of each array, a letter each: k states, of which the first array has as many as there are, n blocks, m
+    joints, b ties and props, or so many."""
+    END: ClassVar[tuple[str, ...]] = ()
+    """Fields that are there together where the end was reached; where it was not, `reason` says why."""
 
     def as_details(self) -> dict[str, Any]:
         """JSON values for an answer's details."""
@@ -22,12 +39,79 @@ class InDetails:
         return {self.NAME: {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in found}}
 
     @classmethod
-    def of(cls, details: dict[str, Any]) -> Self | None:
-        """What details hold, None where they hold none."""
+    def of(cls, details: dict[str, Any], assembly: Assembly) -> Self | None:
+        """What details hold, None where they hold none.
+
+        Raises:
+            ValueError: what they hold is not of this wall, or no such thing; the words begin with its name.
+        """
         data = details.get(cls.NAME)
         if data is None:
             return None
-        return cls(**{name: np.array(value) if isinstance(value, list) else value for name, value in data.items()})
+        listed = fields(cls)
+        if not isinstance(data, dict) or set(data) != {each.name for each in listed}:
+            raise ValueError(f"{cls.NAME} does not have the fields {', '.join(each.name for each in listed)}")
+        sizes = {"n": assembly.n_blocks, "m": assembly.n_interfaces, "b": len(assembly.bars), "2": 2, "3": 3}
+        found: dict[str, Any] = {}
+        for each in listed:
+            kind, _, none = str(each.type).partition(" | ")
+            given, place, shape = data[each.name], f"{cls.NAME}.{each.name}", cls.SHAPES.get(each.name)
+            if given is None and none:
+                found[each.name] = None
+            else:
+                found[each.name] = (
+                    _plain(given, kind, place) if shape is None else _array(given, kind, place, shape, sizes)
+                )
+        first = next((each for each in found.values() if isinstance(each, np.ndarray)), np.zeros(1))
+        if first.ndim == 1 and not (len(first) and np.all(np.diff(first) > 0.0)):
+            raise ValueError(f"{cls.NAME} has no states in ascending order")
+        reached = {found[name] is not None for name in cls.END}
+        if cls.END and reached != {not found["reason"]}:
+            raise ValueError(f"{cls.NAME} has to give {', '.join(cls.END)}, or else a reason")
+        return cls(**found)
+
+
+def _plain(given: Any, kind: str, place: str) -> Any:
+    """A number, truth or text of an annotation. Raises ValueError."""
+    if type(given) not in _PLAIN[kind] or (kind == "float" and not abs(given) <= COUNTABLE):
+        raise ValueError(f"{place} is no {kind}")
+    return float(given) if kind == "float" else given
+
+
+def _array(given: Any, kind: str, place: str, shape: str, sizes: dict[str, int]) -> Any:
+    """An array of an annotation and a shape, the first of which says how many states there are. Raises ValueError."""
+    try:
+        array = np.array(given)
+    except ValueError:
+        raise ValueError(f"{place} has rows of different lengths") from None
+    for letter, size in zip(shape, array.shape, strict=False):
+        sizes.setdefault(letter, size)
+    wanted = tuple(sizes.get(letter, 0) for letter in shape)
+    if array.size == 0 == math.prod(wanted):
+        array = np.zeros(wanted, dtype=bool if kind == "BoolArray" else int if kind == "IntArray" else float)
+    if array.shape != wanted:
+        raise ValueError(f"{place} is of shape {array.shape}, not {wanted}")
+    if array.dtype.kind not in _KINDS[kind] or not (abs(array) <= COUNTABLE).all():
+        raise ValueError(f"{place} has other entries than numbers up to {COUNTABLE:g}, or truths, as {kind} says")
+    return array.astype(float) if kind == "FloatArray" else array
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenWall(InDetails):
+    """A wall with n blocks, m joints and b bars at an extreme reaction of supports that move.
+
+    Attributes:
+        reaction: work of the wall on the prescribed motion of the supports.
+        forces: (m, 3) contact forces [force]; tensions: (b,) of ties and props, prestress included [force].
+        mechanism: (n, 3) motion of all blocks that belongs to them, the supports as prescribed or backwards.
+    """
+
+    NAME = "driven"
+    SHAPES: ClassVar = {"forces": "m3", "tensions": "b", "mechanism": "n3"}
+    reaction: float
+    forces: FloatArray
+    tensions: FloatArray
+    mechanism: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +132,17 @@ class FollowedWall(InDetails):
     """
 
     NAME = "followed"
+    SHAPES: ClassVar = {
+        "displacement": "k",
+        "value": "k",
+        "places": "kn3",
+        "forces": "km3",
+        "mechanisms": "kn3",
+        "closed": "m2",
+        "fallen": "n3",
+        "falling": "n3",
+    }
+    END = ("falls", "fallen", "falling")
     displacement: FloatArray
     value: FloatArray
     places: FloatArray
@@ -75,6 +170,15 @@ class SupportPath(InDetails):
     """
 
     NAME = "support_path"
+    SHAPES: ClassVar = {
+        "displacement": "k",
+        "reaction": "k",
+        "slipping": "k",
+        "opened": "k",
+        "forces": "m3",
+        "mechanism": "n3",
+    }
+    END = ("mechanism", "constant_from")
     displacement: FloatArray
     reaction: FloatArray
     slipping: IntArray
@@ -108,16 +212,27 @@ class ShakenWall(InDetails):
         time: (k,) of the states [s].
         places: (k, n, 3) displacements of the centroids from where they were drawn [length] and rotations [rad].
         energy: kinetic and potential in the end, zero for the wall at rest as drawn [force x length]; None: no number.
-        fallen: (f,) indices of the blocks that have fallen in the end.
+        fallen: (n,) blocks that have fallen in the end.
         at_rest: whether all motion has died.
         engine: its name and version; impact: e, that it was measured to have at the impact of a rocking block.
     """
 
     NAME = "shaken"
+    SHAPES: ClassVar = {"time": "k", "places": "kn3", "fallen": "n"}
     time: FloatArray
     places: FloatArray
     energy: float | None
-    fallen: IntArray
+    fallen: BoolArray
     at_rest: bool
     engine: str
     impact: float
+
+
+def check_followed(details: dict[str, Any], assembly: Assembly) -> None:
+    """Refuse details that do not hold what they say of a wall whose supports move, that is shaken or that moves on.
+
+    Raises:
+        ValueError: as of `InDetails.of`.
+    """
+    for kind in (DrivenWall, FollowedWall, SupportPath, ShakenWall):
+        kind.of(details, assembly)

@@ -38,6 +38,8 @@ class CarriedSteps:
         steady: multiple of the displacement over which the reaction has to stay the same.
         same: stiffness of a mechanism, as a share of that of the wall at rest, beside what moves with the arms of its
             loads: the dead load over the length scale. A wall that is about to become a mechanism has 1e-2 of it.
+        level: change of a constant reaction at most, in dead loads: a fifth of what the judge leaves open. Over many
+            elastic displacements the stiffness of a mechanism allows more.
     """
 
     first: float = 0.05
@@ -46,6 +48,7 @@ class CarriedSteps:
     speed: float = 0.003
     steady: float = 3.0
     same: float = 1e-3
+    level: float = 1e-3
 
 
 def support_path(
@@ -131,9 +134,9 @@ class _Path:
         begins = int(before[-1])
         at_rest = abs(self._reaction[1] - self._reaction[0]) / far[1]
         assembly = self._wall.assembly
-        of_arms = assembly.force_scale * self._fastest / assembly.length_scale
-        allowed = (steps.same * at_rest + of_arms) * (far[-1] - far[begins])
-        return float(far[begins]) if change[begins:].max() <= allowed else None
+        work = assembly.force_scale * self._fastest
+        allowed = (steps.same * at_rest + work / assembly.length_scale) * (far[-1] - far[begins])
+        return float(far[begins]) if change[begins:].max() <= min(allowed, steps.level * work) else None
 
     def ended(self, constant_from: float | None, reason: str) -> SupportPath:
         """The path up to here."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.details import BAR_FORCES, DRIVEN, REACTION
-from harness.model.followed import FollowedWall
+from harness.model.followed import DrivenWall, FollowedWall
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.la.core.reaction import extreme_reaction
 from methods.la.moved_wall import MovedWall
@@ -29,11 +28,11 @@ class ExtremeReactions(Solver):
             )
         if isinstance(found, str):
             return _none(f"The linear programme of the {what} reaction is {found}.")
-        details = {REACTION: found.reaction, DRIVEN: found.mechanism, BAR_FORCES: found.tensions}
+        driven = DrivenWall(found.reaction, found.forces, found.tensions, found.mechanism)
         sentence = f"The {what} reaction of the moving supports is {found.reaction:.7g}."
         return Answer(
             Status.OK, Finding.STANDS, sentence, forces=found.forces, forces_multiplier=0.0, flow="associated",
-            details=details,
+            details=driven.as_details(),
         )  # fmt: skip
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ from methods.de.settings import SoftSettings
 from methods.de.support_path import NO_REST, CarriedSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
-from tests.moving_supports import BRICKS, both, bricks, semicircle, tilted, values, weight
+from tests.moving_supports import BRICKS, both, bricks, path_of, semicircle, tilted, values, weight
 
 MOVED = 2e-4
 """Share of the weight by which displacements and rounded corners change a reaction: the arches have 5e-5."""
@@ -78,17 +80,15 @@ def test_judge_rejects_what_is_no_plateau():
     gives, pushes = both(reaction_paths(wall, "de-soft"))
     assert gives.judgement is not None
     assert gives.mechanism is not None
-    right = {
-        "reaction": float(gives.reaction[-1]),
-        "forces": gives.forces,
-        "mechanism": gives.mechanism,
+    how: dict[str, Any] = {
         "gives_way": True,
         "tolerance": gives.judgement.tolerance,
         "extremes": gives.extremes,
     }
-    assert judge_plateau(wall.assembly, **right).accepted
+    right = path_of(gives)
+    assert judge_plateau(wall.assembly, right, **how).accepted
     for other in ({"forces": pushes.forces}, {"mechanism": pushes.mechanism}, {"mechanism": 2.0 * gives.mechanism}):
-        assert not judge_plateau(wall.assembly, **(right | other)).accepted
+        assert not judge_plateau(wall.assembly, replace(right, **other), **how).accepted
 
 
 def test_path_that_ends_before_the_reaction_is_constant():

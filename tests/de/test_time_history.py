@@ -291,7 +291,7 @@ def test_judge_rejects_what_the_places_do_not_show():
     wall = stood.wall.assembly
 
     def accepted(found: drystone.Shaking, finding: Finding | None = None, **wrong: Any) -> bool | None:
-        given = {"time": found.time, "places": found.places, "at_rest": found.at_rest} | wrong
+        given = {"time": found.time, "places": found.places, "at_rest": found.at_rest, "moves_until": 0.1} | wrong
         return judge_time_history(wall, found.finding if finding is None else finding, **given).accepted
 
     assert accepted(stood)
@@ -301,6 +301,8 @@ def test_judge_rejects_what_the_places_do_not_show():
     assert not accepted(fell, Finding.STANDS)
     early = 2 + int(np.argmax(np.sign(stood.places[20:, 1, 2]) != np.sign(stood.places[20, 1, 2]))) + 20  # an impact
     assert not accepted(stood, time=stood.time[:early], places=stood.places[:early])
+    assert not accepted(stood, time=stood.time[:early], places=stood.places[:early], at_rest=False)
+    assert not accepted(stood, time=stood.time[:1], places=stood.places[:1])  # before the ground has moved
     looked_at = int(np.linspace(0, len(stood.places) - 1, 50)[20])
     for row, column, shift in (
         (slice(None), (0, 0), 1e-2),

@@ -5,21 +5,28 @@ from __future__ import annotations
 import importlib
 import json
 import re
+import tomllib
 from collections.abc import Callable
+from dataclasses import fields, replace
+from importlib.metadata import Distribution
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import drystone
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
-from harness.engine.provenance import JUDGE
+from harness.engine.provenance import JUDGE, PACKAGES, brought_with
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.engine.sweep.expand import expand, sources_of
 from harness.engine.sweep.running import sweep
 from harness.engine.sweep.study import Study
+from harness.model.bars import Bars
+from harness.model.content import exact_hash_of
+from harness.model.method import method_points
 from harness.model.reading import validate
 from harness.model.result import Judgement
 from tests.commands import drystone as command
@@ -72,6 +79,44 @@ def test_title_metadata_and_doubts_of_a_wall_make_no_other_run():
     assert len({run.key for run in runs}) == 1
     other = Run(drystone.build_wall(wall | {"friction": 0.123}).case, METHOD, {}, Limits())
     assert other.key != runs[0].key
+
+
+def other_than(name: str, value: Any, fixed: Any) -> Any:
+    """Another value of a field of an assembly."""
+    if isinstance(value, Bars):
+        return replace(value, names=("a tie",))
+    if isinstance(value, tuple):
+        return (*value[:-1], value[-1] + 1.0 if name == "polygons" else "another")
+    if name == "support_motion":
+        return value + fixed[:, None]
+    return ~value if value.dtype == bool else value + 1
+
+
+def test_a_wall_that_is_made_of_another_has_a_key_of_all_that_it_holds():
+    """What makes it may change from release to release without a word in any file of a wall."""
+    wall = case(stack(2)).assembly
+    same = {exact_hash_of(wall), exact_hash_of(wall.copied()), exact_hash_of(replace(wall, name="another"))}
+    assert len(same) == 1
+    names = [each.name for each in fields(wall) if each.name != "name"]
+    other = {name: other_than(name, getattr(wall, name), wall.fixed) for name in names if name != "crushing"}
+    hashes = {exact_hash_of(replace(wall, **{name: value})) for name, value in other.items()}
+    assert len(hashes | same) == len(names)
+    assert exact_hash_of(replace(wall, crushing=np.ones(wall.n_interfaces))) not in hashes | same
+
+
+def test_versions_of_what_answers_are_part_of_the_key(tmp_path: Path):
+    """All that an extra of a method brings, and what another distribution brings or requires."""
+    own = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    tools = {"checkout", "drawings", "parquet", "cluster", "sensitivity", "umbridge", "docs", "dev"}
+    assert {package for extra, packages in own.items() if extra not in tools for package in packages} <= set(PACKAGES)
+    folder = tmp_path / "theirs-2.5.dist-info"
+    folder.mkdir()
+    about = "Metadata-Version: 2.1\nName: theirs\nVersion: 2.5\nRequires-Dist: numpy>=1.20 ; python_version>'3'\n"
+    (folder / "METADATA").write_text(f"{about}Requires-Dist: not-there[extra]\n", encoding="utf-8")
+    (folder / "entry_points.txt").write_text("[drystone.methods]\nmine = theirs.method:Mine\n", encoding="utf-8")
+    (point,) = Distribution.at(folder).entry_points
+    assert brought_with(point) == {"theirs": "2.5", "numpy": np.__version__}
+    assert brought_with(next(each for each in method_points() if each.name == "la")) == {}
 
 
 def test_settings_limits_and_method_make_another_run():

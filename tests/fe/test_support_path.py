@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from methods.fe.settings import GapSpringsSettings
 from methods.fe.support_path import SupportSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
-from tests.moving_supports import BRICKS, both, bricks, segmental, semicircle, values, weight
+from tests.moving_supports import BRICKS, both, bricks, path_of, segmental, semicircle, values, weight
 
 EXACT = 1e-8
 """Relative accuracy that `fe` declares of a plateau."""
@@ -175,30 +176,31 @@ def test_judge_rejects_what_is_no_plateau():
     gives, pushes = both(reaction_paths(wall))
     assert gives.mechanism is not None
     assert pushes.mechanism is not None
-    right: dict[str, Any] = {
-        "reaction": float(gives.reaction[-1]),
-        "forces": gives.forces,
-        "mechanism": gives.mechanism,
-        "gives_way": True,
-        "tolerance": EXACT,
-        "extremes": gives.extremes,
-    }
+    right, value = path_of(gives), float(gives.reaction[-1])
 
-    def accepted(**other: Any) -> bool | None:
-        return judge_plateau(wall.assembly, **(right | other)).accepted
+    def accepted(
+        *, gives_way: bool = True, extremes: tuple[float, float] = gives.extremes, **other: Any
+    ) -> bool | None:
+        path = replace(right, **other)
+        return judge_plateau(wall.assembly, path, gives_way=gives_way, tolerance=EXACT, extremes=extremes).accepted
 
     assert accepted()
-    assert not accepted(reaction=right["reaction"] * 1.001)
+    assert accepted(constant_from=float(gives.displacement[-1]))
+    assert not accepted(constant_from=0.0)
+    assert not accepted(constant_from=-1.0)
+    assert not accepted(constant_from=2.0 * float(gives.displacement[-1]))
+    assert not accepted(reaction=gives.reaction * 1.001)
+    assert not accepted(forces=1e200 * gives.forces)
     assert not accepted(forces=pushes.forces)
     assert not accepted(forces=gives.forces * 1.001)
     assert not accepted(mechanism=pushes.mechanism)
     assert not accepted(mechanism=-gives.mechanism, gives_way=False)
     assert not accepted(mechanism=2.0 * gives.mechanism)
     assert not accepted(mechanism=np.where(wall.assembly.fixed[:, None], gives.mechanism, 0.0))
-    assert not accepted(extremes=(right["reaction"] + 0.01, 9.0))
+    assert not accepted(extremes=(value + 0.01, 9.0))
     elastic = support_path(wall.assembly, True, GapSpringsSettings(), SupportSteps(most=3))
     assert isinstance(elastic, SupportPath)
-    assert not accepted(forces=elastic.forces, reaction=float(elastic.reaction[-1]))
+    assert not accepted(forces=elastic.forces, reaction=elastic.reaction, displacement=elastic.displacement)
 
 
 def test_command(tmp_path: Path):

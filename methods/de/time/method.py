@@ -50,7 +50,7 @@ class TimeHistories(Solver):
                 found.time,
                 found.places,
                 found.energy,
-                np.array(found.fallen, dtype=int),
+                np.isin(np.arange(assembly.n_blocks), found.fallen),
                 found.at_rest,
                 f"pymunk {pymunk.version}",
                 impact,
