@@ -93,15 +93,17 @@ def code_version(method: str) -> str:
     Raises:
         KeyError: no method has this name.
     """
-    point = next((point for point in method_points() if point.name == method), None)
+    points = [point for point in method_points() if point.name == method]
     program = program_named(method)
     if program is not None:
         return _sources_version("harness.model", others=[program.version])
-    if point is None:
+    if not points:
         raise KeyError(method)
-    packages = sorted({point.module.split(".")[0], "harness.model"})
-    own = {name: number for name, number in versions().items() if name not in ("commit", "drystone")}
-    others = [f"{name}={number}" for name, number in sorted((own | brought_with(point)).items())]
+    packages = sorted({*(point.module.split(".")[0] for point in points), "harness.model"})
+    used = {name: number for name, number in versions().items() if name not in ("commit", "drystone")}
+    for point in points:
+        used |= brought_with(point)
+    others = [f"{name}={number}" for name, number in sorted(used.items())]
     return _sources_version(*packages, others=others)
 
 

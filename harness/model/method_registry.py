@@ -95,14 +95,21 @@ def load_method(name: str) -> Method:
 
     Raises:
         KeyError: no method has this name; the message lists those there are.
-        InputError: its package or program is there but cannot be loaded, or brings no method.
+        InputError: its package or program is there but cannot be loaded, or brings no method; or two packages bring it.
     """
-    for point in method_points():
-        if point.name == name:
-            with _loading(name):
-                brought = point.load()
-                made = brought() if callable(brought) else brought
-            return checked_method(made, f"method {name}")
+    points = [point for point in method_points() if point.name == name]
+    if len(points) > 1:
+        brought_by = " and ".join(sorted(point.dist.name if point.dist else point.value for point in points))
+        raise InputError(
+            f"it is brought by {brought_by}, and which of them answers is not known",
+            "Uninstall all but one, or give the method of yours a name of its own",
+            f"method {name}",
+        )
+    for point in points:
+        with _loading(name):
+            brought = point.load()
+            made = brought() if callable(brought) else brought
+        return checked_method(made, f"method {name}")
     found = method_named(name)
     if found is None:
         raise KeyError(f"no method is called {name!r}; there are: {', '.join(listed_methods())}")

@@ -15,9 +15,10 @@ import pytest
 
 import drystone
 from harness.engine.preload import shipped
+from harness.engine.provenance import code_version
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import GROUP, Answer, Finding, Listed, Method, Solver, Status, Traits
+from harness.model.method import GROUP, Answer, Finding, Listed, Method, Solver, Status, Traits, method_points
 from harness.model.method_registry import load_method, method_names, prepared
 from methods.dummy import Dummy
 
@@ -98,6 +99,19 @@ def test_what_an_entry_point_leads_to_must_be_a_method(given: str, monkeypatch: 
     monkeypatch.setattr("harness.model.method_registry.method_points", lambda: (EntryPoint("alone", given, GROUP),))
     with pytest.raises(InputError, match=r"method alone.* is no method.*inherits from"):
         load_method("alone")
+
+
+def test_of_two_packages_that_bring_a_method_of_one_name_none_answers(monkeypatch: pytest.MonkeyPatch):
+    """The second one would have taken the place of `la` in every command, without a word."""
+    own = next(point for point in method_points() if point.name == "la")
+    points = (EntryPoint("la", "tests.engine.test_imports:Plain", GROUP), own)
+    for place in ("harness.model.method_registry", "harness.engine.provenance"):
+        monkeypatch.setattr(f"{place}.method_points", lambda: points)
+    with pytest.raises(InputError, match="method la: it is brought by drystone and tests"):
+        load_method("la")
+    version = code_version.__wrapped__("la")
+    monkeypatch.setattr("harness.engine.provenance.method_points", lambda: (own,))
+    assert code_version.__wrapped__("la") != version, "a refusal would be found in the store when one is gone"
 
 
 @pytest.mark.parametrize("given", [Alone(), Dummy, None])
