@@ -68,6 +68,29 @@ def segmental(friction: float, *settlements: dict[str, Any], origin: tuple[float
     return drystone.build_wall(content | {"settlements": list(settlements)})
 
 
+def keystone(friction: float) -> drystone.Wall:
+    """A wedge of height 1 and unit weight 20 with faces at 60 degrees to the ground, whose right support spreads by 1.
+
+    Each face bears half the weight: the reaction is W / 2 tan(60 degrees - phi) where it slides down and W / 2 tan(60
+    degrees + phi) where it is pushed up (`thrusts`).
+    """
+    x = 1.0 / np.sqrt(3.0)
+    polygons = {
+        "wedge": [[0, 0], [x, 1], [-x, 1]],
+        "left": [[0, 0], [-x, 1], [-2, 1], [-2, 0]],
+        "right": [[0, 0], [2, 0], [2, 1], [x, 1]],
+    }
+    blocks = [{"id": name, "polygon": corners, "fixed": name != "wedge"} for name, corners in polygons.items()]
+    spread = [{"blocks": ["right"], "translation": [1, 0]}]
+    content = {"format": "wall/1", "unit_weight": 20.0, "friction": friction, "blocks": blocks}
+    return drystone.build_wall(content | {"settlements": spread})
+
+
+def thrusts(friction: float) -> list[float]:
+    """The reactions of `keystone`, of the support that gives way and of the one that pushes."""
+    return [10.0 / np.sqrt(3.0) * float(np.tan(np.pi / 3.0 + way * np.arctan(friction))) for way in (-1.0, 1.0)]
+
+
 def weight(wall: drystone.Wall) -> float:
     """Of the free blocks."""
     return float(wall.assembly.weight[wall.assembly.free].sum())

@@ -38,8 +38,8 @@ class CarriedSteps:
         steady: multiple of the displacement over which the reaction has to stay the same.
         same: stiffness of a mechanism, as a share of that of the wall at rest, beside what moves with the arms of its
             loads: the dead load over the length scale. A wall that is about to become a mechanism has 1e-2 of it.
-        level: change of a constant reaction at most, in dead loads: a fifth of what the judge leaves open. Over many
-            elastic displacements the stiffness of a mechanism allows more.
+        level: change of a constant reaction at most, as a share of it or of the dead load, whichever is more: what the
+            judge leaves open. Over many elastic displacements the stiffness of a mechanism allows more.
     """
 
     first: float = 0.05
@@ -48,7 +48,7 @@ class CarriedSteps:
     speed: float = 0.003
     steady: float = 3.0
     same: float = 1e-3
-    level: float = 1e-3
+    level: float = 5e-3
 
 
 def support_path(
@@ -135,8 +135,9 @@ class _Path:
         at_rest = abs(self._reaction[1] - self._reaction[0]) / far[1]
         assembly = self._wall.assembly
         work = assembly.force_scale * self._fastest
-        allowed = (steps.same * at_rest + work / assembly.length_scale) * (far[-1] - far[begins])
-        return float(far[begins]) if change[begins:].max() <= min(allowed, steps.level * work) else None
+        of_mechanism = (steps.same * at_rest + work / assembly.length_scale) * (far[-1] - far[begins])
+        allowed = min(of_mechanism, steps.level * max(work, abs(self._reaction[-1])))
+        return float(far[begins]) if change[begins:].max() <= allowed else None
 
     def ended(self, constant_from: float | None, reason: str) -> SupportPath:
         """The path up to here."""

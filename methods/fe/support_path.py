@@ -35,9 +35,10 @@ class SupportSteps:
         first: step, in displacements of a gap spring under the mean weight of a block: the wall is still elastic then.
         longer: factor on the next; most: number of steps. A plateau that is not reached at longer^most first steps,
             some 1e9 times the elastic displacement, is beyond the digits of the gaps.
-        steady: multiple of the displacement of a mechanism up to which the reaction has to stay the same where gaps
-            still change their states on it; same: to this share of the dead load, a hundred times what equilibria that
-            are found by relaxation leave out of balance.
+        steady: multiple of the displacement of a mechanism, or of the largest gap or slip at rest if that is more, up
+            to which the reaction has to stay the same where gaps still change their states on it.
+        same: to this share of the dead load, a hundred times what equilibria that are found by relaxation leave out of
+            balance.
         noise: gap rates below this share of the speed of the supports count as zero on the plateau, as do rates of
             breakpoint functions below this share of the fastest gap rate: the tangent is solved to 1e-12 or so of them.
     """
@@ -115,6 +116,7 @@ def _followed(
     assembly = model.assembly
     same = steps.same * assembly.force_scale * fastest_vertex(assembly, assembly.support_motion)
     points, last = [_ImposedPoint(0.0, model, gravity)], None
+    largest = points[0].largest_strain
     for _ in range(steps.most):
         point = _imposed(imposed, factor, gravity, points[-1], step)
         if not point.rest.found:
@@ -130,7 +132,7 @@ def _followed(
             return points, piece, ""
         if piece.is_mechanism() and last is None:
             last, kept = piece, len(points)
-        if last is not None and point.displacement > steps.steady * last.point.displacement:
+        if last is not None and point.displacement > steps.steady * max(largest, last.point.displacement):
             return points[:kept], last, ""
         step *= steps.longer
     return points, None, f"The reaction still changes after {steps.most} steps."
@@ -149,6 +151,12 @@ class _ImposedPoint:
         """(m, 3) contact forces [force]."""
         rest = self.rest
         return self.model.end_forces(*self.model.forces(rest.u, rest.history, rest.state))
+
+    @property
+    def largest_strain(self) -> float:
+        """The largest opening, overlap or slip of a gap: slips that turn back first go back as far."""
+        opening, slip = self.model.strains(self.rest.u)
+        return float(max(abs(opening).max(), abs(slip + self.rest.history / self.model.kt).max()))
 
     @property
     def reaction(self) -> float:

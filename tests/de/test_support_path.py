@@ -20,7 +20,7 @@ from methods.de.settings import SoftSettings
 from methods.de.support_path import NO_REST, CarriedSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
-from tests.moving_supports import BRICKS, both, bricks, path_of, semicircle, tilted, values, weight
+from tests.moving_supports import BRICKS, both, bricks, keystone, path_of, semicircle, thrusts, tilted, values, weight
 
 MOVED = 2e-4
 """Share of the weight by which displacements and rounded corners change a reaction: the arches have 5e-5."""
@@ -66,6 +66,13 @@ def test_bricks_end_where_springs_do(friction: float):
         assert each.reaction[0] == pytest.approx(other.reaction[0], rel=MOVED)
         assert each.opened[-1] > each.opened[0]
         assert each.slipping[-1] > 0
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3])
+def test_a_wedge_that_slides_both_ways(friction: float):
+    wall = keystone(friction)
+    found = both(reaction_paths(wall, "de-soft"))
+    assert values(found) == pytest.approx(thrusts(friction), abs=5e-3 * weight(wall))
 
 
 def test_support_that_turns():

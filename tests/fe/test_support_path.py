@@ -20,7 +20,18 @@ from methods.fe.settings import GapSpringsSettings
 from methods.fe.support_path import SupportSteps, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
-from tests.moving_supports import BRICKS, both, bricks, path_of, segmental, semicircle, values, weight
+from tests.moving_supports import (
+    BRICKS,
+    both,
+    bricks,
+    keystone,
+    path_of,
+    segmental,
+    semicircle,
+    thrusts,
+    values,
+    weight,
+)
 
 EXACT = 1e-8
 """Relative accuracy that `fe` declares of a plateau."""
@@ -162,6 +173,12 @@ def test_a_path_without_an_end_has_no_plateau():
     assert (path.mechanism, path.constant_from) == (None, None)
     assert path.reason == "The reaction still changes after 3 steps."
     assert len(path.reaction) == 4
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.1, 0.3, 0.5])
+def test_a_wedge_that_slides_at_rest_slides_back_first(friction: float):
+    """At rest it slides down both faces, so that small motions of either sense change no force."""
+    assert values(both(reaction_paths(keystone(friction)))) == pytest.approx(thrusts(friction), rel=EXACT)
 
 
 def test_a_wall_that_falls_has_no_path():
