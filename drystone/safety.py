@@ -328,6 +328,7 @@ class _Search:
         answered = result.status in (Status.OK, Status.NOT_CONVERGED)
         decided = result.finding in (Finding.STANDS, Finding.FALLS)
         why = result.judge.sentence if decided else result.sentence
-        self.reason = f"At {factor:.7g} the run decides nothing: {why.rstrip('.')}."
+        where = "Without friction" if math.isinf(factor) else f"At {factor:.7g}"
+        self.reason = f"{where} the run decides nothing: {why.rstrip('.')}."
         self.cut_off = not answered
         return None

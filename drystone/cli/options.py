@@ -79,7 +79,7 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
             say(f"drystone: {error}", err=True)
             sys.exit(INPUT_ERROR)
         except KeyboardInterrupt:
-            click.echo("drystone: interrupted; finished runs are kept in the store", err=True)
+            click.echo("drystone: interrupted; finished runs are kept where there is a store (--store)", err=True)
             sys.exit(_INTERRUPTED)
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -82,7 +82,7 @@ class Store:
         self._copy: tempfile.TemporaryDirectory[str] | None = None
         self._connection: sqlite3.Connection | None = None
         if not read_only:
-            path.parent.mkdir(parents=True, exist_ok=True)
+            _make_folder(path)
         if path.exists() and not stat.S_ISREG(path.stat().st_mode):
             raise InputError("it is not a regular file", OTHER_FILE, source=str(path))
         try:
@@ -330,6 +330,14 @@ class Store:
             self._connection.close()
         if self._copy is not None:
             self._copy.cleanup()
+
+
+def _make_folder(path: Path) -> None:
+    """Make the folder of a store. Raises InputError where one of its parents is a file."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        raise InputError(f"{path.parent} is no folder", OTHER_FILE, source=str(path)) from None
 
 
 def _connect(path: Path, how: str = "") -> sqlite3.Connection:

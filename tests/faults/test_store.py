@@ -230,6 +230,14 @@ def test_what_is_no_store_is_told(tmp_path: Path, kind: str):
     told_in_one_sentence(drystone("report", "--store", path, "--report", tmp_path / "r.html"), str(path), "not a")
 
 
+def test_a_file_in_place_of_the_folder_of_a_store_is_told(tmp_path: Path):
+    (tmp_path / "notes").write_text("no folder")
+    for path in (tmp_path / "notes" / "s.sqlite", tmp_path / "notes" / "more" / "s.sqlite"):
+        with pytest.raises(InputError, match="is no folder") as told, open_store(path):
+            pass
+        assert str(path) in str(told.value)
+
+
 def test_a_killed_run_leaves_a_log_and_a_report_from_a_read_only_copy_still_has_all_of_it(whole: Path, tmp_path: Path):
     path = tmp_path / "s.sqlite"
     script = (

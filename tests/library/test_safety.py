@@ -179,6 +179,12 @@ def test_a_run_that_is_cut_off_ends_the_search():
     assert (search.lower, search.upper, search.runs) == (1.0, 2.0, 4)
 
 
+def test_a_run_without_friction_that_is_cut_off_is_called_so():
+    search = _Search(lambda at: made_up(at, 1.2, (1.1, math.inf), Status.TIMEOUT))
+    search.bracket(100.0)
+    assert (search.runs, search.reason) == (1, "Without friction the run decides nothing: Why.")
+
+
 def test_a_wall_as_drawn_that_decides_nothing_has_no_factor():
     search = _Search(lambda at: made_up(at, 1.2, (0.9, 1.1), Status.NOT_CONVERGED))
     search.bracket(100.0)
