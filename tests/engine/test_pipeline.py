@@ -107,7 +107,7 @@ def test_a_wall_that_is_made_of_another_has_a_key_of_all_that_it_holds():
 def test_versions_of_what_answers_are_part_of_the_key(tmp_path: Path):
     """All that an extra of a method brings, and what another distribution brings or requires."""
     own = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
-    tools = {"checkout", "drawings", "parquet", "cluster", "sensitivity", "umbridge", "docs", "dev"}
+    tools = {"figures", "checkout", "drawings", "parquet", "cluster", "sensitivity", "umbridge", "docs", "dev"}
     assert {package for extra, packages in own.items() if extra not in tools for package in packages} <= set(PACKAGES)
     folder = tmp_path / "theirs-2.5.dist-info"
     folder.mkdir()
