@@ -215,13 +215,15 @@ class _Piece:
         return cls(point, (opening, model.kt * slip + rest.history), rates, velocity)
 
     def is_mechanism(self) -> bool:
-        """Whether no force changes along it, and no gap closes."""
+        """Whether no force changes along it, no gap closes, and no slip goes back, from where it would stick again."""
         model, state = self.point.model, self.point.rest.state
         strain, elastic = strain_rates(*self.rates, model.kt, model.lift, state)
         fastest = max(strain, 1.0)  # the speed of the supports: where the wall goes with them nothing strains
         rounding = model.options.mechanism.elastic * fastest
         parting = self.rates[0] - model.lift * abs(self.rates[1])
-        return elastic <= rounding and bool(parting[state == OPEN].min(initial=0.0) >= -rounding)
+        onward = np.where(state == SLIP_PLUS, 1.0, -1.0) * self.rates[1] / model.kt
+        least = min(parting[state == OPEN].min(initial=0.0), onward[state >= SLIP_PLUS].min(initial=0.0))
+        return elastic <= rounding and bool(least >= -rounding)
 
     def is_last(self, noise: float) -> bool:
         """Whether no gap changes its state ahead."""

@@ -149,6 +149,28 @@ def test_arch_whose_mechanism_the_tangent_does_not_choose(wall: drystone.Wall):
     assert values(found) == pytest.approx(found[0].extremes, rel=EXACT)
 
 
+def test_slip_that_goes_back_is_no_mechanism():
+    """Blocks slip back for a long way at one reaction, until they stick and the wall moves on."""
+    pattern = {
+        "type": "running_bond",
+        "block_length": 1.0,
+        "block_height": 0.378,
+        "count": 2,
+        "bricks": 2,
+        "base": False,
+    }
+    supports = [
+        {"id": name, "polygon": [[left, -0.4], [right, -0.4], [right, 0], [left, 0]], "material": "rock", "fixed": True}
+        for name, left, right in (("left", -0.1, 0.7735), ("right", 0.7735, 2.1))
+    ]
+    rules = [{"joint": "bed", "value": 0.779}, {"joint": "head", "value": 0.883}]
+    content = {"format": "wall/1", "unit_weight": 20.0, "pattern": pattern, "blocks": supports}
+    turn = [{"blocks": ["right"], "rotation": -1.0, "about": [0.76, -0.02]}]
+    wall = drystone.build_wall(content | {"friction": {"default": 0.449, "rules": rules}, "settlements": turn})
+    found = both(reaction_paths(wall))
+    assert values(found)[1] == pytest.approx(found[1].extremes[1], rel=1e-7)
+
+
 def test_joints_with_strength():
     """The joint of the block with what rests bears T = 0.3 f_t in tension, spread by its two ends."""
     wall = drystone.build_wall(data(DOWN, cohesion=20.0, tensile_strength=2.0))
