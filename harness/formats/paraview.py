@@ -14,7 +14,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.bars import bar_tensions
 from harness.model.build import Built
 from harness.model.displaced import carried, released
-from harness.model.joint_margins import joint_margins
+from harness.model.joint_margins import as_answered, joint_margins
 from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
 from harness.model.result import Result, vertex_velocities
 from harness.model.writing import replacing, write_whole
@@ -129,7 +129,7 @@ def _mesh(built: Built, result: Result | None, frame: VtkStep) -> Any:
         of_bars = np.full(len(bars), np.nan) if tension is None else tension
         fields["is_joint"][1][m:] = 0
         fields["tension"] = np.full(len(order), np.nan), np.concatenate([np.full(m, np.nan), of_bars])
-    margins = joint_margins(assembly, built.joint_thickness, forces)
+    margins = joint_margins(as_answered(assembly, result), built.joint_thickness, forces)
     for name in ("eccentricity", "shear_utilisation", "eccentricity_utilisation", "edge_stress"):
         of_joints = np.concatenate([getattr(margins, name), np.full(len(bars), np.nan)])
         fields[name] = np.full(len(order), np.nan), of_joints

@@ -20,6 +20,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.case import Case
+from harness.model.details import AnswerDetails
 from harness.model.result import Result, normalised_mechanism, relative_velocities
 from harness.model.table import TableColumn
 
@@ -87,6 +88,15 @@ def joint_margins(
         _share(abs(slacks[:, 0] - slacks[:, 1]), reach, small),
         _share(normal / thickness, width, negligible * length),
     )
+
+
+def as_answered(assembly: Assembly, result: Result | None) -> Assembly:
+    """The wall whose strength the forces of an answer use: joints that it calls broken have none left."""
+    broken = np.zeros(assembly.n_interfaces, dtype=bool)
+    listed = None if result is None else AnswerDetails(result.details).broken
+    if isinstance(listed, list):
+        broken[[p for p in listed if type(p) is int and 0 <= p < len(broken)]] = True
+    return assembly.with_broken(broken & assembly.brittle)
 
 
 def _share(part: FloatArray, whole: FloatArray, small: FloatArray | float) -> FloatArray:
@@ -158,7 +168,7 @@ def joint_rows(case: Case, result: Result, reached: float = 1e-6, still: float =
     """
     if result.forces is None or len(result.forces) != case.assembly.n_interfaces:
         return []
-    assembly = case.assembly
+    assembly = as_answered(case.assembly, result)
     margins = joint_margins(assembly, case.built.joint_thickness, np.asarray(result.forces, dtype=float))
     opens, slips = _moves(assembly, result, still)
     states = np.full(assembly.n_interfaces, CLOSED, dtype=object)

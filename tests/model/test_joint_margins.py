@@ -103,6 +103,17 @@ def test_cohesion_and_tensile_strength_leave_more():
     assert np.isnan(all_used.edge_stress), "the resultant lies outside the joint"
 
 
+def test_broken_joints_have_no_cohesion_left(tmp_path: Path):
+    """Glued by c A = 4 the block breaks loose and slides at its friction, all of which it uses then."""
+    wall = drystone.build_wall(wall_data(stack(1, WIDTH, 0.2), FRICTION, cohesion=4.0 / WIDTH, after="residual"))
+    result = drystone.analyse(wall, "la")
+    assert (result.multiplier, result.details["broken"]) == (pytest.approx(FRICTION), [0])
+    (row,) = joint_rows(wall.case, result)
+    assert (row.number("shear_utilisation"), row.state) == (pytest.approx(1.0), "slips")
+    write_vtu(wall.case.built, result, tmp_path / "w.vtu")
+    assert np.nanmax(meshio.read(tmp_path / "w.vtu").cell_data["shear_utilisation"][-1]) == pytest.approx(1.0)
+
+
 def test_a_joint_in_tension_has_neither_eccentricity_nor_stress_and_its_support_bears_it():
     built = block(push=0.0, lift=WEIGHT + 0.3, cohesion=4.0, tensile_strength=2.0)
     found = margins_of(built)
