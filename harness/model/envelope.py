@@ -1,7 +1,8 @@
 """Which of several load cases of one wall governs: the one with the lowest multiplier, for every method by itself.
 
-Of joints with cohesion or tensile strength it is the residual multiplier, that of the wall without them: mortar is
-brittle, so a load case that is safe by its strength alone is not safe.
+Of joints with cohesion or tensile strength the residual multiplier counts too, that of the wall without them: mortar is
+brittle, so a load case that is safe by its strength alone is not safe. It need not be the lower one: without dilatancy
+a wall may collapse at less with strength than without.
 """
 
 from __future__ import annotations
@@ -14,40 +15,37 @@ from typing import Any
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
 from harness.model.details import AnswerDetails
-from harness.model.method import Finding, Status
-from harness.model.result import Result, residual_of
+from harness.model.method import Status
+from harness.model.result import Result, bears_less_with_strength, plastic_and_residual_of, size_of
 from harness.model.result_texts import answer_text
 
 EQUAL = 1e-9
 """Relative difference of two multipliers that is rounding: the judge's own tolerance."""
 
 
-def size_of(result: Result, *, residual: bool) -> float | None:
-    """What a load case is ordered by: 0 if the wall falls, infinite if nothing makes it collapse, else a multiplier.
+def safe_size(result: Result, *, residual: bool) -> float | None:
+    """What a load case is ordered by, as `size_of`; None without an accepted answer.
 
     Args:
         result: the answer to it.
-        residual: whether that without the cohesion and tensile strength of the joints counts.
-
-    Returns:
-        the multiplier; None without an accepted answer.
+        residual: whether the lower of two counts, with the cohesion and tensile strength of the joints and without.
     """
-    answer = residual_of(result) if residual else result
-    if answer is None or result.judge.accepted is False or {result.status, answer.status} != {Status.OK}:
+    if result.judge.accepted is False:
         return None
-    if answer.finding is Finding.FALLS:
-        return 0.0
-    if answer.finding in (Finding.UNBOUNDED, Finding.STANDS):
-        return math.inf
-    return answer.multiplier if answer.finding.has_multiplier else None
+    answers = (result,) if not residual else plastic_and_residual_of(result) or ()
+    sizes = [size for answer in answers if (size := size_of(answer)) is not None]
+    return min(sizes) if sizes and len(sizes) == len(answers) else None
 
 
 def ranked_text(result: Result) -> str:
-    """The answer by which a load case is ranked, with that of the whole strength behind a residual one."""
-    residual = residual_of(result)
-    if residual is None or result.status is not Status.OK:
+    """The answer by which a load case is ranked; of two, with strength of joints and without, the other behind it."""
+    pair = plastic_and_residual_of(result)
+    if pair is None or result.status is not Status.OK:
         return answer_text(result)
-    return f"{answer_text(residual)} residual ({answer_text(result)} with the strength of its joints)"
+    plastic, residual = pair
+    if bears_less_with_strength(plastic, residual):
+        return f"{answer_text(plastic)} with the strength of its joints ({answer_text(residual)} residual)"
+    return f"{answer_text(residual)} residual ({answer_text(plastic)} with the strength of its joints)"
 
 
 @dataclass(frozen=True)
@@ -78,12 +76,13 @@ class Envelope:
 
     @property
     def by_residual(self) -> bool:
-        """Whether residual multipliers decide, because the joints have cohesion or tensile strength."""
-        return any(AnswerDetails(result.details).has_without_strength for result in self.results)
+        """Whether residual multipliers count, because the joints have cohesion or tensile strength."""
+        details = [AnswerDetails(result.details) for result in self.results]
+        return any(each.has_without_strength or each.has_with_strength for each in details)
 
     @property
     def _sizes(self) -> list[float | None]:
-        return [size_of(result, residual=self.by_residual) for result in self.results]
+        return [safe_size(result, residual=self.by_residual) for result in self.results]
 
     @property
     def verdict(self) -> str:
@@ -109,15 +108,19 @@ class Envelope:
 
     def as_json(self) -> dict[str, Any]:
         """JSON values: wall, method, answers by load case, what they are ranked by, and the governing ones."""
+        pairs = [plastic_and_residual_of(result) for result in self.results]
+        ranked_by = "residual_multiplier" if self.by_residual else "multiplier"
+        if any(pair is not None and bears_less_with_strength(*pair) for pair in pairs):
+            ranked_by = "lower_multiplier"
         return {
             "wall": self.wall,
             "method": self.method,
             "load_cases": [
                 {"load_case": name, "finding": str(result.finding), "multiplier": result.multiplier}
-                | ({} if (residual := residual_of(result)) is None else {"residual_multiplier": residual.multiplier})
-                for name, result in zip(self.names, self.results, strict=True)
+                | ({} if pair is None else {"residual_multiplier": pair[1].multiplier})
+                for name, result, pair in zip(self.names, self.results, pairs, strict=True)
             ],
-            "ranked_by": "residual_multiplier" if self.by_residual else "multiplier",
+            "ranked_by": ranked_by,
             "governing": list(self.governing),
             "sentence": self.sentence,
         }

@@ -176,6 +176,27 @@ def plastic_and_residual_of(result: Result) -> tuple[Result, Result] | None:
     return None if residual is None else (result, residual)
 
 
+def size_of(answer: Answer | Result) -> float | None:
+    """What answers are ordered by: 0 if the wall falls, infinite if nothing makes it collapse, else the multiplier.
+
+    None without an answer. Of walls without dilatancy neither the size with the strength of joints nor that without is
+    always the lower: strength may bear the compression on which the friction of another joint depends.
+    """
+    if answer.status is not Status.OK:
+        return None
+    if answer.finding is Finding.FALLS:
+        return 0.0
+    if answer.finding in (Finding.UNBOUNDED, Finding.STANDS):
+        return math.inf
+    return answer.multiplier if answer.finding.has_multiplier else None
+
+
+def bears_less_with_strength(plastic: Answer | Result, residual: Answer | Result, rounding: float = 1e-9) -> bool:
+    """Whether the multiplier with the strength of joints is the lower one, by more than a relative rounding."""
+    whole, without = size_of(plastic), size_of(residual)
+    return whole is not None and without is not None and whole < without * (1.0 - rounding)
+
+
 def _beside(result: Result, own: object) -> Result | None:
     """What stands in the details of a result for an answer, as a result."""
     if not isinstance(own, dict):

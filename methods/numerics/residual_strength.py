@@ -13,6 +13,7 @@ from harness.model.deadline import best_so_far
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
 from harness.model.errors import as_sentence
 from harness.model.method import Answer, Finding, Status
+from harness.model.result import bears_less_with_strength
 from methods.numerics.claims import analysed
 
 
@@ -44,11 +45,14 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
     rely = "Rely on the residual answer"
     if residual.flow == "associated" and residual.finding is not Finding.FALLS:
         rely = "Both are upper bounds: rely on the least residual multiplier (`la`)"
+    reason = "because joints of mortar are brittle"
+    if bears_less_with_strength(plastic, residual):
+        rely, reason = (
+            "Rely on the lower one, with strength",
+            "which a wall without dilatancy may need less to collapse",
+        )
     said = _residual_in_words(residual, "cohesion and tensile strength")
-    sentence = (
-        f"{as_sentence(plastic.sentence)} That is with plastic strength of the joints; {said}. {rely}, because joints "
-        "of mortar are brittle."
-    )
+    sentence = f"{as_sentence(plastic.sentence)} That is with plastic strength of the joints; {said}. {rely}, {reason}."
     return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
 
 
@@ -72,10 +76,13 @@ def between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
         return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
     kept = {name: value for name, value in residual.details.items() if name not in _OF_PROOFS}
     upper = f"{plastic.multiplier:.7g}" if plastic.multiplier is not None else f'the answer "{plastic.finding}"'
+    estimate, this = "a safe estimate", "this"
+    if bears_less_with_strength(plastic, residual):
+        estimate, this = "which is no safe estimate", "that"
     sentence = (
-        f"{as_sentence(residual.sentence)} That is with all brittle joints broken, a safe estimate; if all joints kept "
+        f"{as_sentence(residual.sentence)} That is with all brittle joints broken, {estimate}; if all joints kept "
         f"their strength, the least known would be {upper}. Because {joints}, the multiplier of the wall lies between "
-        "this and the maximum of `la-associated`; `fe` follows how they break."
+        f"{this} and the maximum of `la-associated`; `fe` follows how they break."
     )
     own = {"broken": np.flatnonzero(assembly.brittle).tolist(), "with_strength": _as_detail(plastic)}
     return replace(residual, sentence=sentence, details=kept | own)

@@ -8,9 +8,9 @@ import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.comparison import CaseResults
-from harness.model.envelope import size_of
+from harness.model.envelope import safe_size
 from harness.model.method import Status
-from harness.model.result import Result, plastic_and_residual_of
+from harness.model.result import Result, plastic_and_residual_of, size_of
 from reports.labels import numbers
 from reports.labels.wall_summary import value_in_words
 
@@ -45,11 +45,27 @@ def least_residual(item: CaseResults) -> tuple[float, Result] | None:
     """
     found = [
         (size, result)
-        for result in item.mains
-        if not (result.traits.bounds_above or result.traits.brackets)
-        and (size := size_of(result, residual=True)) is not None
+        for result in _reliable(item)
+        if result.status is Status.OK
+        and (pair := plastic_and_residual_of(result)) is not None
+        and (size := size_of(pair[1])) is not None
     ]
     return min(found, key=lambda pair: pair[0], default=None)
+
+
+def least_safe(item: CaseResults) -> tuple[float, Result] | None:
+    """As `least_residual`, of the multipliers with the strength of the joints and without the lower one."""
+    found = [(size, result) for result in _reliable(item) if (size := safe_size(result, residual=True)) is not None]
+    return min(found, key=lambda pair: pair[0], default=None)
+
+
+def _reliable(item: CaseResults) -> list[Result]:
+    """Answers of the main methods that neither give upper bounds nor measure, but for rejected ones."""
+    return [
+        result
+        for result in item.mains
+        if not (result.traits.bounds_above or result.traits.brackets) and result.judge.accepted is not False
+    ]
 
 
 def strength_text(assembly: Assembly, unit: str) -> str:

@@ -12,10 +12,10 @@ from harness.model.joint_margins import JOINTS, JointColumn, JointRow, joint_row
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding, Status
 from harness.model.proof import least_known, proof_of
-from harness.model.result import Result, residual_of
+from harness.model.result import Result, plastic_and_residual_of
 from harness.model.support_reactions import SupportReaction, out_of_balance, reactions_of
 from harness.model.table import in_units
-from reports.findings.strength import least_residual
+from reports.findings.strength import least_residual, least_safe
 from reports.labels import labels, numbers
 
 _CRITICAL = tuple(
@@ -34,7 +34,7 @@ class Way:
         name: in words.
         value: the least multiplier with its method, or what was found instead.
         proved: what is proved of it.
-        governs: whether no other has a lower one, or a lower residual one where the joints have strength; of none while
+        governs: whether no other has a lower one, residual ones included where the joints have strength; of none while
             another has no accepted answer.
         residual: the least multiplier without that strength; empty of dry joints.
     """
@@ -51,7 +51,7 @@ class Governing:
     """What governs one wall.
 
     Attributes:
-        item: the load case with the lowest multiplier, the lowest residual one where the joints have strength.
+        item: the load case with the lowest multiplier, residual or with strength of the joints.
         ways: all load cases.
         unanswered: names of those without an accepted answer, any of which may govern.
         shown: the state that is drawn and whose forces stand in the tables; None without one.
@@ -72,8 +72,14 @@ class Governing:
 
     @property
     def by_residual(self) -> bool:
-        """Whether residual multipliers decide which load case governs."""
+        """Whether residual multipliers count for which load case governs."""
         return any(way.residual for way in self.ways)
+
+    @property
+    def strength_in_words(self) -> str:
+        """What is counted of the strength of joints in the least multiplier of each load case; empty of dry joints."""
+        breaks = self.item.case.assembly.breaks
+        return (", as joints break" if breaks else ", with strength") if self.by_residual else ""
 
 
 def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
@@ -108,12 +114,12 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
 
 
 def _collapse(item: CaseResults) -> float | None:
-    """The multiplier by which a load case governs: of joints with strength the residual one.
+    """The multiplier by which a load case governs: with strength of joints or without, the lower.
 
     Infinite where nothing makes the wall collapse; None without an accepted answer.
     """
     if item.case.assembly.strong:
-        found = least_residual(item)
+        found = least_safe(item)
         return None if found is None else found[0]
     least = least_known(item)
     if least is not None and least.multiplier is not None:
@@ -142,9 +148,9 @@ def _residual(item: CaseResults) -> str:
     if found is None:
         return "no accepted answer"
     value, result = found
-    residual = residual_of(result)
-    if residual is not None and not residual.finding.has_multiplier:
-        return f"{labels.FINDING[residual.finding]} ({result.method})"
+    pair = plastic_and_residual_of(result)
+    if pair is not None and not pair[1].finding.has_multiplier:
+        return f"{labels.FINDING[pair[1].finding]} ({result.method})"
     return f"{numbers.multiplier(value)} ({result.method})"
 
 

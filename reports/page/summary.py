@@ -14,14 +14,14 @@ from harness.model.live_load import direction_in_words
 from harness.model.method import Status
 from harness.model.proof import least_known, proof_of
 from harness.model.ranges import percent_text
-from harness.model.result import Result, Verdict
+from harness.model.result import Result, Verdict, bears_less_with_strength, plastic_and_residual_of
 from reports.charts.overview import AGREE
 from reports.drawing.display_list import DisplayList
 from reports.drawing.mechanism_drawing import mechanism_drawing, overlay_drawing
 from reports.findings.agreement import agreement, mains, spread
 from reports.findings.joints import joints_in_words, motion
 from reports.findings.reasons import SAME_MOTION, mechanism_in_words
-from reports.findings.strength import least_residual
+from reports.findings.strength import least_safe
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import friction_text, value_in_words
@@ -232,8 +232,9 @@ def which_number(item: CaseResults, unanswered: Sequence[str] = ()) -> str:
     under = f" in load case {item.case.load_case}" if item.case.load_case else ""
     known = f"{value} ({least.method}){under}, {proof.label}: {proof.clause}."
     brittle = _without_strength(item, lead)
+    given = "As its joints break" if item.case.assembly.breaks else "With its strength"
     sentences = [doubt] * bool(doubt)
-    sentences.append(f"{brittle} With its strength: {known}" if brittle else f"{lead} {known}")
+    sentences.append(f"{brittle} {given}: {known}" if brittle else f"{lead} {known}")
     springs = [r for r in mains(item) if r.traits.elastic and r is not least and r.multiplier is not None]
     if springs and springs[0].finding.has_multiplier:
         sentences.append(
@@ -248,9 +249,15 @@ def which_number(item: CaseResults, unanswered: Sequence[str] = ()) -> str:
 
 def _without_strength(item: CaseResults, lead: str) -> str:
     """The number to use for joints with cohesion or tensile strength, which are brittle in mortar; empty for others."""
-    found = least_residual(item)
+    found = least_safe(item)
     if found is None or not math.isfinite(found[0]):
         return ""
+    pair = plastic_and_residual_of(found[1])
+    if pair is not None and bears_less_with_strength(*pair):
+        return (
+            f"{lead} {numbers.multiplier(found[0])} ({found[1].method}), below the residual multiplier: "
+            "without dilatancy a wall may collapse at less with cohesion and tensile strength than without."
+        )
     return (
         f"{lead} {numbers.multiplier(found[0])} ({found[1].method}), the residual multiplier: mortar is "
         "brittle, and this is the wall without its cohesion and tensile strength."

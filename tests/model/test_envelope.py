@@ -12,10 +12,11 @@ import pytest
 import drystone
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
-from harness.model.envelope import Envelope, envelope, envelopes
+from harness.model.envelope import Envelope, envelope, envelopes, ranked_text
 from harness.model.live_load import both_signs
 from harness.model.method import Status
 from harness.model.result import Result
+from reports.page.governing import governing
 
 B1, B2, H = 1.0, 1.2, 2.0
 """Width of the base and of the top of a block that leans to the left, and its height."""
@@ -121,10 +122,34 @@ def test_the_residual_multiplier_decides_where_joints_have_strength():
 
 def test_first_screen_ranks_by_the_residual_multiplier_and_says_so(tmp_path: Path):
     page = drystone.compare(bonded(), ["la"], isolated=False).report(tmp_path / "report.html").read_text("utf-8")
-    assert "The load case with the least residual multiplier governs" in page
+    assert "The load case with the lowest multiplier governs, residual ones included" in page
     rows = re.findall(r'<tr><th scope="row">(light|heavy)</th>((?:<td>[^<]*</td>){4})</tr>', page)
     assert rows == [
         ("light", "<td>0.50000 (la)</td><td>5.5000 (la)</td><td>least, to rounding</td><td>yes</td>"),
         ("heavy", "<td>0.66667 (la)</td><td>4.0000 (la)</td><td>least, to rounding</td><td></td>"),
     ]
     assert "For safety use 0.50000 (la), the residual multiplier" in page
+
+
+@pytest.mark.parametrize(
+    ("more", "value", "words"),
+    [({}, 0.45, "Rely on the lower one, with strength"), ({"after": "residual"}, 0.5, "which is no safe estimate")],
+)
+def test_the_multiplier_with_strength_decides_where_it_is_the_lower_one(
+    more: dict[str, str], value: float, words: str, tmp_path: Path
+):
+    """Of two blocks on friction mu one slides off while its glued side lifts it: mu (1 - c A / W), below mu."""
+    head = {"joint": "head", "value": 0.5, "cohesion": 2.0} | more
+    panel = {"type": "panel", "cell_length": 1.0, "cell_height": 0.5, "layout": ["ab", "##"], "fixed": "#"}
+    pair = {"format": "wall/1", "unit_weight": 20.0, "pattern": panel, "friction": {"default": 0.5, "rules": [head]}}
+    wall = drystone.build_wall(pair | {"loads": {"live": {"body": [{"per_weight": [-1, 0]}]}}}, "pair")
+    compared = drystone.compare(wall, ["la"], isolated=False)
+    (result,) = compared.run.cases[0].results
+    assert result.multiplier == pytest.approx(value, rel=1e-9)
+    assert words in result.sentence
+    assert ranked_text(result) == "0.4500000 with the strength of its joints (0.5000000 residual)"
+    assert envelope([wall.case], [result]).as_json()["ranked_by"] == "lower_multiplier"
+    page = compared.report(tmp_path / "report.html").read_text("utf-8")
+    assert "For safety use 0.45000 (la), below the residual multiplier" in page
+    (way,) = governing(compared.run.cases).ways
+    assert (way.residual, way.governs) == ("0.50000 (la)", True)
