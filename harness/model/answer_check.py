@@ -193,7 +193,7 @@ def _array(value: Any, shape: tuple[int, ...], what: str) -> Any:
 
 
 def _number(value: Any, what: str) -> float | None:
-    return None if value is None else float(_array(value, (), what))
+    return None if value is None else float(_array(value, (), what)) + 0.0  # zero without a sign
 
 
 def _bracket(value: Any) -> tuple[float, float] | None:

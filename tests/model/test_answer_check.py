@@ -56,6 +56,10 @@ def test_what_an_answer_may_hold_becomes_plain_values(name: str):
     assert getattr(checked(replace(PLAIN, **changes), WALL), part) == value
 
 
+def test_zero_has_no_sign():
+    assert str(checked(replace(PLAIN, multiplier=-0.0), WALL).multiplier) == "0.0"
+
+
 def test_arrays_become_floats_of_the_same_values():
     forces, motion = np.arange(3 * M).reshape(M, 3), [[k, 0, 1] for k in range(N)]
     found = checked(replace(PLAIN, forces=forces, mechanism=motion, forces_multiplier=1), WALL)
