@@ -35,6 +35,7 @@ def check_table(
     versions: Collection[int],
     walls: Collection[str],
     methods: Collection[str] = (),
+    beside: Collection[pd.DataFrame] = (),
 ) -> None:
     """Refuse a table of others that cannot be joined to one of these sets, versions, walls and methods.
 
@@ -42,10 +43,13 @@ def check_table(
         table: of others; name: of its file.
         sets, versions, walls: of one's own table.
         methods: whose rows one's own table has or will have.
+        beside: tables that were checked and are joined as well.
 
     Raises:
-        InputError: as `Bench.joined`; here rows of this table alone are compared with each other.
+        InputError: as `Bench.joined`; here rows of this table and those beside it are compared with each other.
     """
+    import pandas as pd
+
     missing = [column for column in COLUMNS if column not in table.columns]
     if missing:
         raise InputError(f"it has no column {', '.join(missing)}", "Give a table of `drystone bench -o`", source=name)
@@ -57,13 +61,15 @@ def check_table(
                 "Join tables of one set and version",
                 source=name,
             )
-    strange = next((column for column, wrong in _wrong_cells(table, set(walls)) if wrong.any()), None)
-    if strange is not None:
-        problem = f"column {strange} has a cell that cannot be in it"
-        raise InputError(problem, "Give a table of `drystone bench -o`", source=name)
+    for column, wrong in _wrong_cells(table, set(walls)):
+        for _, row in table[wrong].head(1).iterrows():
+            problem = (
+                f"column {column} has a cell that cannot be in it: {row[column]} ({row['method']} on {row['wall']})"
+            )
+            raise InputError(problem, "Give a table of `drystone bench -o`", source=name)
     for method in sorted(set(methods) & set(table["method"])):
         raise InputError(f"it has rows of {method}, and so has the other table", _RENAME, source=name)
-    refuse_contradictions(table.astype(dict.fromkeys(_FLAGS, bool)), name)
+    refuse_contradictions(pd.concat([*beside, table]).astype(dict.fromkeys(_FLAGS, bool)), name)
 
 
 def refuse_contradictions(table: pd.DataFrame, name: str) -> None:
@@ -80,16 +86,24 @@ def refuse_contradictions(table: pd.DataFrame, name: str) -> None:
 
 
 def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, Any]]:
-    """Columns of a table of others, each with which of its cells cannot be in it: other walls, no flag, no number."""
+    """Columns of a table of others, each with which of its cells cannot be in it: other walls, no flag, no number.
+
+    Answers that are not correct may be below zero.
+    """
     import pandas as pd
 
     yield "wall", ~table["wall"].isin(walls)
     yield "method", table["method"].isna()
     for column in _FLAGS:
         yield column, ~table[column].map(lambda cell: isinstance(cell, bool | np.bool_))
-    for column in ("multiplier", "lower", "upper", "cpu_seconds", "wall_seconds", "speed_seconds", "speed_spread"):
+    answers, measures = (
+        ("multiplier", "lower", "upper"),
+        ("cpu_seconds", "wall_seconds", "speed_seconds", "speed_spread"),
+    )
+    for column in (*answers, *measures):
         numbers = pd.to_numeric(table[column], errors="coerce")
-        yield column, (numbers.isna() & table[column].notna()) | (numbers < 0.0) | np.isinf(numbers)
+        below_zero = (numbers < 0.0) & (table["correct"].astype(bool) if column in answers else True)
+        yield column, (numbers.isna() & table[column].notna()) | below_zero | np.isinf(numbers)
     for column in ("blocks", "interfaces", "peak_memory_bytes"):
         yield column, ~(pd.to_numeric(table[column], errors="coerce").between(0, 2**53))
 

@@ -26,9 +26,11 @@ from drystone.cli.options import (
 )
 from harness.engine.isolate import preload_methods
 from harness.engine.plan import check_methods
-from harness.engine.run import Limits
+from harness.engine.run import Limits, Run
 from harness.model.errors import InputError
 from harness.model.library import library
+from harness.model.method import Status
+from harness.model.result import Result
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,7 +46,13 @@ if TYPE_CHECKING:
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="Also count the rows of this table; may be repeated.",
 )
-@click.option("-o", "--output", multiple=True, type=OUTPUT, help="The table as .csv, its figure as .pdf, .svg or .png.")
+@click.option(
+    "-o",
+    "--output",
+    multiple=True,
+    type=OUTPUT,
+    help="The table as .csv, its figure as .pdf, .svg or .png with drystone[figures]; may be repeated.",
+)
 @seconds_option
 @memory_option
 @jobs_option
@@ -76,13 +84,20 @@ def bench_(
     )
     check_methods(names)
     tables = [_read(path) for path in others]
-    for path, table in zip(others, tables, strict=True):  # before all runs, not after them
-        walls = {wall.name for wall in chosen.walls}
-        check_table(table, str(path), {chosen.name}, {chosen.version}, walls, names)
+    walls = {wall.name for wall in chosen.walls}
+    for number, (path, table) in enumerate(zip(others, tables, strict=True)):  # before all runs, not after them
+        check_table(table, str(path), {chosen.name}, {chosen.version}, walls, names, tables[:number])
     preload_methods(names)
+    unanswered: dict[tuple[str, Status], list[Result]] = {}
     with terminal.progress_bar(len(chosen.walls) * len(names), quiet=as_json) as progress:
+
+        def noted(run: Run, result: Result, stored: bool) -> None:
+            progress(run, result, stored)
+            if result.status is not Status.OK:
+                unanswered.setdefault((result.method, result.status), []).append(result)
+
         made = bench(
-            name, names, jobs=jobs, limits=Limits(seconds, memory * 2**20), store=store, fresh=fresh, progress=progress
+            name, names, jobs=jobs, limits=Limits(seconds, memory * 2**20), store=store, fresh=fresh, progress=noted
         )
     for path, table in zip(others, tables, strict=True):
         made = made.joined(table, str(path))
@@ -93,6 +108,9 @@ def bench_(
         return
     say(f'Set "{name}", version {chosen.version}: {chosen.title}. Every share is of all its walls.')
     say(made.summary().to_string(index=False, float_format="{:.4g}".format, na_rep="-"))
+    for (method, status), results in sorted(unanswered.items()):
+        first = results[0]
+        say(f"{method}: {status} {len(results)} times, on {first.case}: {first.sentence}")
 
 
 def _read(path: Path) -> pd.DataFrame:

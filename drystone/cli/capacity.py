@@ -29,7 +29,12 @@ from harness.engine.plan import find_cases
 @click.command()
 @case_argument
 @click.option("--block", help="Id of the block whose centroid is the control point.  [default: the live load's mean]")
-@click.option("-o", "--output", type=OUTPUT, help="Also draw or list the curve: .pdf, .svg, .png or .csv.")
+@click.option(
+    "-o",
+    "--output",
+    type=OUTPUT,
+    help="Also draw or list the curve: .csv, or .pdf, .svg or .png with drystone[figures].",
+)
 @json_flag
 @cases_option
 @runs_options

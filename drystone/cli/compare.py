@@ -157,15 +157,15 @@ def _write_report(compared: ComparisonRun, path: Path, *, drawn: bool = False) -
 
 @click.command()
 @report_option
-@click.option("--figures", is_flag=True, help="Also draw each case as a PDF in the folder beside the report.")
+@click.option("--figures", is_flag=True, help="Also draw each case as a PDF beside the report, with drystone[figures].")
 @click.option("--appendix", metavar="WALL", help="Run WALL and write an engineer's appendix on it, as HTML and PDF.")
 @store_option
 @catching
 def report(report: Path, figures: bool, appendix: str | None, store: Path) -> None:
     """Build the report of the last comparison again, from the store, without running anything.
 
-    With --appendix, write two to four sheets on one wall beside the report: result, assumptions, loads, drawing,
-    reactions, mechanism, forces. What the store does not have is run.
+    With --appendix, which needs drystone[figures], write two to four sheets on one wall beside the report: result,
+    assumptions, loads, drawing, reactions, mechanism, forces. What the store does not have is run.
     """
     if figures:
         import_module("reports.figures")  # refused before anything is written where matplotlib is missing

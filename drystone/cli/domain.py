@@ -50,7 +50,9 @@ from harness.engine.plan import find_cases
 )
 @click.option("--accuracy", type=float, help="Relative.  [default: 1e-6 for a polygon, 0.01 for points]")
 @click.option("--most", type=click.IntRange(4), default=200, show_default=True, help="Runs after which it stops.")
-@click.option("-o", "--output", type=OUTPUT, help="Also draw or list it: .pdf, .svg, .png or .csv.")
+@click.option(
+    "-o", "--output", type=OUTPUT, help="Also draw or list it: .csv, or .pdf, .svg or .png with drystone[figures]."
+)
 @json_flag
 @cases_option
 @runs_options

@@ -199,6 +199,7 @@ def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, fo
     """Draw CASE (an id, a WALL.json or a drawing) to a file (.svg, .pdf, .png) or in a window, before anything is run.
 
     A wall with faults is drawn too, with the faults marked under the numbers of `drystone validate`; exit code 2 then.
+    Needs drystone[figures].
     """
     from reports.figures.figures import show_window
     from reports.figures.wall_check_figure import draw_inspected, inspected_figure

@@ -131,11 +131,7 @@ def export(
         if result.status is not Status.OK or result.finding is Finding.NONE:
             raise InputError(f"{result.method} has no answer to write: {result.sentence}", element=found.id)
         say(f"drystone: {found.id}: {result.sentence}", err=True)
-    try:
-        written.write(found.built, result, output)
-    except ImportError as error:
-        remedy = f"pip install {written.package or error.name}"
-        raise InputError(f"the package {error.name} is not installed", remedy) from None
+    written.write(found.built, result, output)
     say(str(output))
 
 

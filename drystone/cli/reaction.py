@@ -61,7 +61,10 @@ SAID = {
     "--until-collapse", is_flag=True, help="How far the supports can move before the wall falls, on updated geometry."
 )
 @click.option(
-    "-o", "--output", type=OUTPUT, help="Also draw or list the path or the way to collapse: .pdf, .svg, .png or .csv."
+    "-o",
+    "--output",
+    type=OUTPUT,
+    help="Also draw or list the path or the way to collapse: .csv, or .pdf, .svg or .png with drystone[figures].",
 )
 @json_flag
 @cases_option

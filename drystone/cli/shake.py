@@ -40,7 +40,12 @@ from harness.model.ground_motion import GRAVITY
 @click.option(
     "--gravity", type=float, default=GRAVITY, show_default=True, callback=finite, help="Acceleration g [m/s2]."
 )
-@click.option("-o", "--output", type=OUTPUT, help="Also draw or list the motion: .pdf, .svg, .png or .csv.")
+@click.option(
+    "-o",
+    "--output",
+    type=OUTPUT,
+    help="Also draw or list the motion: .csv, or .pdf, .svg or .png with drystone[figures].",
+)
 @json_flag
 @cases_option
 @runs_options

@@ -170,7 +170,7 @@ def figure(
     store: Path,
     folders: tuple[Path, ...],
 ) -> None:
-    """Draw the answers of methods on CASE as a figure for a paper."""
+    """Draw the answers of methods on CASE as a figure for a paper; needs drystone[figures]."""
     from reports.figures.figures import check_ending
     from reports.figures.figures import figure as draw
 
@@ -190,7 +190,7 @@ def figure(
 @cases_option
 @catching
 def animate(case: str, method: str, output: Path | None, store: Path, folders: tuple[Path, ...]) -> None:
-    """Animate the mechanism a method finds on CASE."""
+    """Animate the mechanism a method finds on CASE; needs drystone[figures]."""
     from reports.figures.animate import animate as draw
     from reports.figures.animate import check_ending
 

@@ -127,7 +127,7 @@ def _load(task: Task) -> tuple[Method | None, Answer | None]:
         return prepared(loaded(task)), None
     except (InputError, KeyError) as error:
         answer = _failure(Status.REFUSED, f"{error}.")
-        answer.details = {MISSING_PACKAGE: True} if isinstance(error.__cause__, MissingPackage) else {}
+        answer.details = {MISSING_PACKAGE: True} if isinstance(error, MissingPackage) else {}
         return None, answer
 
 

@@ -226,12 +226,6 @@ def _read(path: Path, mapping: Mapping) -> Drawing:
             drawing = reader(path, asked)
         drawing.notes += warned
         return drawing
-    except ImportError as error:
-        raise InputError(
-            f"the package {error.name or found.package} is not installed",
-            f"pip install {found.package or error.name}",
-            source=str(path),
-        ) from None
     except InputError:
         raise
     except Exception as error:  # parsers of other people's formats fail in as many ways as they have lines

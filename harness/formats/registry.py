@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.model.errors import InputError, did_you_mean
+from harness.model.optional import optional
 
 if TYPE_CHECKING:
     from harness.formats.drawing import Asked, Drawing
@@ -30,7 +31,9 @@ class Format:
         stones: what of a drawing gives a stone.
         writer: function of this package that writes a wall and its answer, as "module.name"; empty: it is not written.
         holds: what a file that is written holds.
-        package: to be installed for it; empty: none.
+        package: of the extra `drawings` that it needs; empty: none.
+        module: the package by its name for Python, where that is another.
+        written_without: whether the package is needed to read a file only.
         refusal: why a file is not read, and what to do instead; empty for a format that is read or only written.
         only_imported: whether `drystone import` alone reads it: to other commands a .json is a WALL.json.
     """
@@ -42,20 +45,31 @@ class Format:
     writer: str = ""
     holds: str = ""
     package: str = ""
+    module: str = ""
+    written_without: bool = False
     refusal: str = ""
     only_imported: bool = False
 
     @property
     def read(self) -> Reader:
-        """The reader; raises ImportError where its package is not installed."""
+        """The reader."""
         reader: Reader = _named(self.reader)
         return reader
 
     @property
     def write(self) -> Writer:
-        """The writer; where its package is not installed, calling it raises ImportError."""
+        """The writer."""
         writer: Writer = _named(self.writer)
         return writer
+
+    def refuse_without_package(self) -> None:
+        """Refuse the format where the package that it needs is not installed.
+
+        Raises:
+            MissingPackage: naming the extra that brings it.
+        """
+        if self.package:
+            optional(self.module or self.package, "drawings", self.title)
 
     def row(self) -> dict[str, Any]:
         """What `drystone list formats` shows of it."""
@@ -101,6 +115,7 @@ FORMATS = (
         writer="exporting.write_svg",
         holds="layers of blocks, supports and mechanism",
         package="svgelements",
+        written_without=True,
     ),
     Format(
         (".geojson",),
@@ -117,6 +132,7 @@ FORMATS = (
         reader="polygons.read_shapefile",
         stones="polygons; fields id, layer, material, fixed; a projected .prj",
         package="pyshp",
+        module="shapefile",
     ),
     Format(
         (".csv",),
@@ -171,7 +187,7 @@ def format_read(path: Path) -> Format:
     """The format in which a drawing is read.
 
     Raises:
-        InputError: none, naming those there are or why this one is refused.
+        InputError: none, naming those there are or why this one is refused; or its package is not installed.
     """
     suffix = path.suffix.lower()
     found = BY_SUFFIX.get(suffix)
@@ -184,6 +200,7 @@ def format_read(path: Path) -> Format:
             f"{did_you_mean(suffix, known)} There are: {', '.join(known)} (of COMPAS)".strip(),
             source=str(path),
         )
+    found.refuse_without_package()
     return found
 
 
@@ -191,7 +208,7 @@ def format_written(path: Path) -> Format:
     """The format that the ending of a name asks for.
 
     Raises:
-        InputError: none, naming those there are.
+        InputError: none, naming those there are; or its package is not installed.
     """
     suffix = path.suffix.lower()
     found = BY_SUFFIX.get(suffix)
@@ -199,6 +216,8 @@ def format_written(path: Path) -> Format:
         known = [suffix for suffix, item in BY_SUFFIX.items() if item.writer]
         hint = f"{did_you_mean(suffix, known)} There are: {', '.join(known)}".strip()
         raise InputError(f'a file that ends in "{suffix}" is not written', hint, source=str(path))
+    if not found.written_without:
+        found.refuse_without_package()
     return found
 
 

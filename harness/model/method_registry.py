@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 import numpy as np
 
 from harness.model.assembly import Assembly
-from harness.model.errors import InputError, first_few
+from harness.model.errors import InputError, MissingPackage, first_few
 from harness.model.foreign.program_method import method_named
 from harness.model.foreign.register import programs
 from harness.model.method import OF_COMMANDS, UNLISTED, Method, method_points
@@ -141,9 +141,11 @@ def prepared(method: Method) -> Method:
 
 @contextmanager
 def _loading(name: str) -> Iterator[None]:
-    """Whatever goes wrong inside is reported as a method that cannot be loaded."""
+    """Whatever goes wrong inside is reported as a method that cannot be loaded, or as the package that it lacks."""
     try:
         yield
+    except MissingPackage:  # says itself what to install
+        raise
     except (Exception, SystemExit) as error:
         raise InputError(
             f"it cannot be loaded ({type(error).__name__}: {error})",

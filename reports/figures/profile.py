@@ -27,10 +27,12 @@ def profile_figure(profiles: dict[str, tuple[list[float], list[float]]], table: 
         most = 2.0 * max((ratios[-1] for ratios, _ in profiles.values() if ratios), default=1.0)
         for method, (ratios, shares) in profiles.items():
             look = _look(method)
-            left.step([1.0, *ratios, most], [0.0, *shares, shares[-1] if shares else 0.0], where="post", **look)
+            (line,) = left.step(
+                [1.0, *ratios, most], [0.0, *shares, shares[-1] if shares else 0.0], where="post", **look
+            )
             own = table[(table["method"] == method) & table["correct"] & table["above_least"].notna()]
             height = np.maximum(own["above_least"].to_numpy(dtype=float), ROUNDING)
-            right.plot(own["cpu_seconds"], height, linestyle="", marker=".", color=look["color"], label=method)
+            right.plot(own["cpu_seconds"], height, linestyle="", marker=".", color=line.get_color(), label=method)
         left.set_xscale("log")
         left.set_ylim(0.0, 1.02)
         left.set_xlabel("CPU time over that of the quickest correct method")
@@ -49,9 +51,9 @@ def profile_figure(profiles: dict[str, tuple[list[float], list[float]]], table: 
 
 def _look(method: str) -> dict[str, str]:
     """The colour and line that a method names; those of matplotlib for one that names none or is not installed here."""
-    look = {"label": method}
     try:
         traits = load_method(method).traits
     except (InputError, KeyError):
-        return look
-    return look | {"color": traits.colour or "#14202b", "linestyle": traits.line}
+        return {"label": method}
+    look = {"label": method, "linestyle": traits.line}
+    return look | {"color": traits.colour} if traits.colour else look

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from harness.formats import register
 from harness.formats.registry import FORMATS, Format, drawings, format_read, format_written
 from harness.model import reading
-from harness.model.errors import InputError
+from harness.model.errors import InputError, MissingPackage
 from tests.commands import drystone
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "drawings.md"
@@ -38,6 +39,19 @@ def test_a_format_is_read_written_or_refused_as_its_row_says(item: Format):
                 format_written(path)
 
 
+@pytest.mark.parametrize("item", [item for item in FORMATS if item.package], ids=lambda item: item.title)
+def test_a_format_whose_package_is_missing_is_refused_with_its_extra_before_any_work(
+    item: Format, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setitem(sys.modules, item.module or item.package, None)
+    asked = [format_read] * bool(item.reader) + [format_written] * bool(item.writer and not item.written_without)
+    for known in asked:
+        with pytest.raises(MissingPackage, match=r"drystone\[drawings\]"):
+            known(Path(f"wall{item.suffixes[0]}"))
+    if item.written_without:
+        assert format_written(Path(f"wall{item.suffixes[0]}")) is item
+
+
 def test_no_ending_has_two_formats():
     suffixes = [suffix for item in FORMATS for suffix in item.suffixes]
     assert len(set(suffixes)) == len(suffixes)
@@ -58,7 +72,7 @@ def test_the_list_and_the_docs_show_every_format():
         endings = ", ".join(f"`{suffix}`" for suffix in item.suffixes)
         for shown in (
             item.stones and f"{item.stones} | {item.package}",
-            item.holds and f"{item.holds} | {item.package}",
+            item.holds and f"{item.holds} | {'' if item.written_without else item.package}",
         ):
             assert not shown or f"| {endings} | {shown} |" in page
         assert not item.refusal or f"| {endings} | {item.refusal} |" in page

@@ -10,8 +10,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from click.testing import CliRunner
 
 from drystone.bench import COLUMNS, Bench, Speed, WallSet, machine_speed, rows_of, wall_set
+from drystone.bench_tables import check_table
+from drystone.cli.bench import bench_
 from drystone.comparing import compare
 from drystone.walls import library_wall
 from harness.model.errors import InputError
@@ -151,6 +154,29 @@ def test_table_with_a_cell_that_cannot_be_in_its_column_is_not_joined(column: st
         Bench(TABLE).joined(table, "other.csv")
 
 
+def test_two_tables_with_the_same_rows_are_refused_before_anything_is_run():
+    with pytest.raises(InputError, match=r"second\.csv: quick on a has two rows"):
+        check_table(TABLE, "second.csv", {"core"}, {1}, set("abc"), ("mine",), [TABLE])
+
+
+def test_a_wrong_cell_is_told_with_its_method_and_wall():
+    with pytest.raises(InputError, match=r"column cpu_seconds .*: -1.0 \(quick on a\)"):
+        Bench(TABLE).joined(TABLE.assign(cpu_seconds=-1.0), "other.csv")
+
+
+def test_an_answer_below_zero_that_was_rejected_is_a_row_as_others():
+    theirs = pd.DataFrame([row("a", "theirs", -728.6, 1.0, correct=False)])
+    joined = Bench(TABLE).joined(theirs, "other.csv")
+    assert joined.complete["above_least"].notna().sum() > 0
+    assert joined.summary().set_index("method").loc["theirs", "correct"] == 0.0
+
+
+def test_the_figure_of_a_table_shows_methods_that_are_not_installed_here_apart():
+    left, right = Bench(TABLE).plot().axes
+    assert len({line.get_color() for line in left.lines}) == 2
+    assert [line.get_color() for line in left.lines] == [line.get_color() for line in right.lines]
+
+
 def test_table_read_back_from_its_file_is_joined(tmp_path: Path):
     TABLE.to_csv(tmp_path / "t.csv", index=False)
     theirs = pd.read_csv(tmp_path / "t.csv").assign(method=lambda table: table["method"] + "-theirs")
@@ -170,6 +196,15 @@ def test_speed_of_a_machine_has_a_spread():
     speed = machine_speed(5)
     assert 0.0 < speed.seconds < 60.0
     assert 0.0 <= speed.spread < 60.0  # a busy machine has a wide one
+
+
+def test_command_tells_below_its_table_why_methods_gave_no_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    tiny = {"title": "two", "version": 1, "library": ["slide", "topple"]}
+    monkeypatch.setattr("drystone.bench._sets", lambda: {"tiny": tiny})
+    words = ["--set", "tiny", "--methods", "la-associated", "--memory", "16", "--store", str(tmp_path / "s.sqlite")]
+    done = CliRunner().invoke(bench_, words)
+    assert done.exit_code == 0, done.output
+    assert "la-associated: out_of_memory 2 times, on slide: " in done.output
 
 
 @pytest.mark.slow

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from drystone import Result, Wall, analyse, library_wall
-from harness.model.errors import InputError
-from harness.model.method_registry import load_method
+from harness.model.errors import InputError, MissingPackage
+from harness.model.method_registry import load_method, prepared
 from tests.walls import assembly, stack
 
 WITHOUT_FIGURES = """
@@ -39,6 +39,13 @@ def test_a_missing_package_is_told_with_the_extra_that_brings_it(
     found = load_method(method)
     with pytest.raises(InputError, match=rf"needs the package {package} .*drystone\[{extra}\]"):
         found.solve(assembly(stack(2)), found.Settings())
+
+
+def test_a_peer_that_loads_a_missing_package_says_so_and_no_class_of_python(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "pyscipopt", None)
+    with pytest.raises(MissingPackage, match=r"needs the package pyscipopt .*drystone\[scip\]") as caught:
+        prepared(load_method("scip"))
+    assert "cannot be loaded" not in str(caught.value)
 
 
 def without_figures(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
