@@ -26,3 +26,15 @@ class SilentHighs(highspy.Highs):  # type: ignore[misc]
         """Enable callbacks, silently."""
         self.setOptionValue("output_flag", False)
         super().enableCallbacks()
+
+    def run(self) -> Any:
+        """Solve the model, whatever else in this process uses HiGHS.
+
+        The threads of HiGHS are common to a process, and it refuses to run with another number of them than the first
+        user asked for, as cvxpy or the script around the library may have.
+        """
+        status = super().run()
+        if status == highspy.HighsStatus.kError:
+            highspy.Highs.resetGlobalScheduler(True)
+            status = super().run()
+        return status

@@ -20,3 +20,14 @@ def test_output_is_off_when_callbacks_are_enabled(
     assert SilentHighs(threads=1).getOptionValue("threads")[1] == 1
     assert seen == [False]
     assert capfd.readouterr().out == ""
+
+
+def test_a_programme_is_solved_beside_another_user_of_highs_with_more_threads():
+    highspy.Highs.resetGlobalScheduler(True)
+    other = SilentHighs(threads=2)
+    other.addVar(0.0, 1.0)
+    assert other.run() == highspy.HighsStatus.kOk
+    ours = SilentHighs(threads=1)
+    ours.addVar(0.0, 1.0)
+    assert ours.run() == highspy.HighsStatus.kOk
+    assert ours.getModelStatus() == highspy.HighsModelStatus.kOptimal
