@@ -32,15 +32,10 @@ PACKAGES = (
     "pymunk",
     "shapely",
     "pydantic",
-    "pyb2d3",
-    "pyscipopt",
-    "discopt",
-    "pounce-solver",
-    "openseespy",
-    "compas_cra",
-    "compas_lmgc90",
 )
-"""Packages of which an answer of Drystone's own methods may be made."""
+"""Packages of which an answer of any of Drystone's own methods may be made."""
+_REQUIREMENT = re.compile(r"""([\w.-]+)(?:.*extra == ["']([\w-]+)["'])?""")
+"""The package of a requirement in the metadata of a distribution, and the extra that it belongs to."""
 
 
 @functools.cache
@@ -87,8 +82,8 @@ def machine() -> dict[str, Any]:
 def code_version(method: str) -> str:
     """Hash over the sources a method's answer depends on: its own package and the model, and the packages beneath.
 
-    Of a program they are the files that its command names. Of a method of another distribution the versions of that and
-    of what it requires stand for what is no source in Python.
+    Of a program they are the files that its command names. Versions of what else its distribution requires stand for
+    what is no source in Python.
 
     Raises:
         KeyError: no method has this name.
@@ -108,12 +103,17 @@ def code_version(method: str) -> str:
 
 
 def brought_with(point: EntryPoint) -> dict[str, str]:
-    """Versions of another distribution that brings a method, and of what it requires; of Drystone nothing."""
+    """Versions of the distribution that brings a method, and of what it requires for it.
+
+    Of Drystone they are the packages of an extra that is named in the method, as `paper` in `la-paper`.
+    """
     brings = point.dist
-    if brings is None or brings.name == "drystone":
+    if brings is None:
         return {}
-    required = [found[0] for text in brings.requires or () if (found := re.match(r"[\w.-]+", text))]
-    return _installed(required) | {brings.name: brings.version}
+    required = [(found[1], found[2]) for text in brings.requires or () if (found := _REQUIREMENT.match(text))]
+    if brings.name == "drystone":
+        return _installed(package for package, extra in required if extra in point.name.split("-"))
+    return _installed(package for package, _ in required) | {brings.name: brings.version}
 
 
 def _installed(packages: Iterable[str]) -> dict[str, str]:

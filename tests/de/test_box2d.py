@@ -97,5 +97,5 @@ def test_wall_that_falls_under_its_dead_load_is_said_to():
 
 def test_missing_package_is_named_with_the_way_to_install_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "pyb2d3", None)
-    with pytest.raises(InputError, match=r"Install drystone\[box2d\]"):
+    with pytest.raises(InputError, match=r"drystone\[box2d\]"):
         run_box2d(assembly(stack(1), 0.5))

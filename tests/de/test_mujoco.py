@@ -133,5 +133,5 @@ def test_a_block_at_rest_has_sunk_as_far_as_the_stiffness_and_impedance_of_its_c
 
 def test_without_the_extra_the_user_is_told_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(InputError, match=r"Install drystone\[mujoco\]"):
+    with pytest.raises(InputError, match=r"drystone\[mujoco\]"):
         run_mujoco(assembly(stack(1), 0.5))

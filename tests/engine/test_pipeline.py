@@ -18,7 +18,7 @@ import pytest
 import drystone
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
-from harness.engine.provenance import JUDGE, PACKAGES, brought_with
+from harness.engine.provenance import JUDGE, brought_with
 from harness.engine.run import Limits, Run
 from harness.engine.store import open_store
 from harness.engine.sweep.expand import expand, sources_of
@@ -108,7 +108,11 @@ def test_versions_of_what_answers_are_part_of_the_key(tmp_path: Path):
     """All that an extra of a method brings, and what another distribution brings or requires."""
     own = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     tools = {"figures", "checkout", "drawings", "parquet", "cluster", "sensitivity", "umbridge", "docs", "dev"}
-    assert {package for extra, packages in own.items() if extra not in tools for package in packages} <= set(PACKAGES)
+    assert {word for point in method_points() for word in point.name.split("-")} >= own.keys() - tools
+    points = {point.name: point for point in method_points()}
+    assert brought_with(points["la-paper"]).keys() == {"ipyopt"}
+    assert brought_with(points["la-associated-cvxpy"]).keys() == {"cvxpy-base", "clarabel"}
+    assert brought_with(points["la"]) == {}
     folder = tmp_path / "theirs-2.5.dist-info"
     folder.mkdir()
     about = "Metadata-Version: 2.1\nName: theirs\nVersion: 2.5\nRequires-Dist: numpy>=1.20 ; python_version>'3'\n"
@@ -116,7 +120,6 @@ def test_versions_of_what_answers_are_part_of_the_key(tmp_path: Path):
     (folder / "entry_points.txt").write_text("[drystone.methods]\nmine = theirs.method:Mine\n", encoding="utf-8")
     (point,) = Distribution.at(folder).entry_points
     assert brought_with(point) == {"theirs": "2.5", "numpy": np.__version__}
-    assert brought_with(next(each for each in method_points() if each.name == "la")) == {}
 
 
 def test_settings_limits_and_method_make_another_run():
