@@ -231,7 +231,15 @@ def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [PHONE, TABLET, DESKTOP, WIDE], ids=["phone", "tablet", "desktop", "wide"])
+@pytest.mark.parametrize(
+    "size",
+    [
+        pytest.param(PHONE, id="phone"),
+        pytest.param(TABLET, id="tablet", marks=pytest.mark.slow),
+        pytest.param(DESKTOP, id="desktop"),
+        pytest.param(WIDE, id="wide", marks=pytest.mark.slow),
+    ],
+)
 def test_no_serious_accessibility_fault(browser: Browser, report: Path, size: Any, scheme: Any):
     opened = Opened(browser, report, size)
     opened.page.emulate_media(color_scheme=scheme)

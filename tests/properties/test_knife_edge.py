@@ -54,7 +54,9 @@ def test_a_wall_beyond_its_limit_falls_for_every_method(name, method):
     assert judged.accepted, judged.sentence
 
 
-@pytest.mark.parametrize("method", ["la", "la-associated", "fe", pytest.param("fe-newton", marks=SLOW), "de"])
+@pytest.mark.parametrize(
+    "method", ["la", "la-associated", pytest.param("fe", marks=SLOW), pytest.param("fe-newton", marks=SLOW), "de"]
+)
 @pytest.mark.parametrize("name", [pytest.param("par6-mu0", marks=SLOW), "par6-in-mu0"])
 def test_a_frictionless_stack_is_at_its_limit(name, method):
     result, judged = answered(prepared(load_method(method)), wall(name))
