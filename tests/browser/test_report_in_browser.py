@@ -17,6 +17,8 @@ from tests.reports import samples
 pytestmark = pytest.mark.browser
 PHONE, DESKTOP = {"width": 360, "height": 780}, {"width": 1280, "height": 900}
 TABLET, WIDE = {"width": 768, "height": 1024}, {"width": 1920, "height": 1080}
+QUICK = ("phone-dark", "desktop-light")
+"""Pages that are searched for faults of accessibility outside the full tier, nine seconds each."""
 
 
 UNDER_MENU = 48
@@ -230,14 +232,12 @@ def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
     assert width <= size["width"]
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize(
-    "size",
+    ("size", "scheme"),
     [
-        pytest.param(PHONE, id="phone"),
-        pytest.param(TABLET, id="tablet", marks=pytest.mark.slow),
-        pytest.param(DESKTOP, id="desktop"),
-        pytest.param(WIDE, id="wide", marks=pytest.mark.slow),
+        pytest.param(size, scheme, id=f"{name}-{scheme}", marks=[pytest.mark.slow] * (f"{name}-{scheme}" not in QUICK))
+        for name, size in {"phone": PHONE, "tablet": TABLET, "desktop": DESKTOP, "wide": WIDE}.items()
+        for scheme in ("light", "dark")
     ],
 )
 def test_no_serious_accessibility_fault(browser: Browser, report: Path, size: Any, scheme: Any):

@@ -22,9 +22,19 @@ METHODS = [
 METHODS += ["de", "de-soft", "de-tilt"]
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("check", [pytest.param(check, id=name) for name, check in checks()])
-def test_method_conforms(method: str, check: ConformanceCheck):
+FULL = {("memory", method) for method in METHODS} - {("memory", method) for method in ("fe", "la", "de")}
+"""Checks left to the full tier: many methods use the five seconds of that run."""
+
+
+@pytest.mark.parametrize(
+    ("check", "method"),
+    [
+        pytest.param(check, method, id=f"{name}-{method}", marks=[pytest.mark.slow] * ((name, method) in FULL))
+        for name, check in checks()
+        for method in METHODS
+    ],
+)
+def test_method_conforms(check: ConformanceCheck, method: str):
     """Walls with cohesion or dilatancy, or of a hundred blocks, may be refused, and nothing else."""
     row = check.row(load_method(method))
     allowed = {Outcome.CONFORMS, Outcome.REFUSED} if check.group in ("features", "limits") else {Outcome.CONFORMS}

@@ -21,7 +21,16 @@ from tests.walls import assembly, running_bond, stack, wedge
 PEERS = {"scip": "pyscipopt", "discopt": "discopt", "pounce": "pounce"}
 
 
-@pytest.mark.parametrize("name", ["single-block", "running-bond-overturns", "wall-21", "lact3-arch", "irregular-wall"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "single-block",
+        "running-bond-overturns",
+        "wall-21",
+        "lact3-arch",
+        pytest.param("irregular-wall", marks=pytest.mark.slow),
+    ],
+)
 def test_a_collapse_state_satisfies_every_row(name: str):
     wall = drystone.library_wall(name).assembly
     answer = load_method("la").solve(wall, load_method("la").Settings())
