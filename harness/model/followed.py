@@ -4,34 +4,76 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
+from pydantic import (
+    ConfigDict,
+    Field,
+    PlainValidator,
+    StrictBool,
+    StrictStr,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+)
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.method import Answer, Finding, Status
 
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
-_KINDS = {"FloatArray": "iuf", "IntArray": "iu", "BoolArray": "b"}
-"""Kinds of NumPy's types that an array may have, by its annotation."""
-_PLAIN: dict[str, tuple[type, ...]] = {"float": (int, float), "bool": (bool,), "str": (str,)}
-"""Types that another value may have, by its annotation."""
+Number = Annotated[float, Field(strict=True, ge=-COUNTABLE, le=COUNTABLE)]
+
+
+def floats(axes: str) -> PlainValidator:
+    """Reads numbers, in an array that has these axes, as `InDetails` names them."""
+    return _array(axes, "iuf", float)
+
+
+def integers(axes: str) -> PlainValidator:
+    """Reads whole numbers, likewise."""
+    return _array(axes, "iu", int)
+
+
+def truths(axes: str) -> PlainValidator:
+    """Reads truths, likewise."""
+    return _array(axes, "b", bool)
+
+
+def _array(axes: str, kinds: str, kind: type) -> PlainValidator:
+    def read(given: Any, info: ValidationInfo) -> Any:
+        try:
+            array = np.array(given)
+        except ValueError:
+            raise ValueError("rows of different lengths") from None
+        sizes: dict[str, int] = info.context or {}
+        for letter, size in zip(axes, array.shape, strict=False):
+            sizes.setdefault(letter, size)  # the first array says how many states there are
+        wanted = tuple(sizes.get(letter, 0) for letter in axes)
+        if array.size == 0 == math.prod(wanted):
+            array = np.zeros(wanted, kind)
+        if array.shape != wanted:
+            raise ValueError(f"of shape {array.shape}, not {wanted}")
+        if array.dtype.kind not in kinds or not (abs(array) <= COUNTABLE).all():
+            raise ValueError(f"other entries than each a {kind.__name__}, of size {COUNTABLE:g} at most")
+        return array.astype(kind)
+
+    return PlainValidator(read)
 
 
 @dataclass(frozen=True, eq=False)
 class InDetails:
     """What details of an answer hold under its name: arrays, numbers, texts, and None for what there is not.
 
+    The axes of an array are a letter each: k states, n blocks, m joints, b ties and props, or so many as a digit says.
     The first of its arrays ascends.
     """
 
     NAME: ClassVar[str]
-    SHAPES: ClassVar[dict[str, str]]
-    """Axes of each array, a letter each: k states, of which the first array has as many as there are, n blocks, m
-    joints, b ties and props, or so many."""
     END: ClassVar[tuple[str, ...]] = ()
     """Fields that are there together where the end was reached; where it was not, `reason` says why."""
+    __pydantic_config__ = ConfigDict(arbitrary_types_allowed=True, extra="forbid")
 
     def as_details(self) -> dict[str, Any]:
         """JSON values for an answer's details."""
@@ -48,52 +90,23 @@ class InDetails:
         data = details.get(cls.NAME)
         if data is None:
             return None
-        listed = fields(cls)
-        if not isinstance(data, dict) or set(data) != {each.name for each in listed}:
-            raise ValueError(f"{cls.NAME} does not have the fields {', '.join(each.name for each in listed)}")
+        listed = [each.name for each in fields(cls)]
+        if not isinstance(data, dict) or set(data) != set(listed):
+            raise ValueError(f"{cls.NAME} does not have the fields {', '.join(listed)}")
         sizes = {"n": assembly.n_blocks, "m": assembly.n_interfaces, "b": len(assembly.bars), "2": 2, "3": 3}
-        found: dict[str, Any] = {}
-        for each in listed:
-            kind, _, none = str(each.type).partition(" | ")
-            given, place, shape = data[each.name], f"{cls.NAME}.{each.name}", cls.SHAPES.get(each.name)
-            if given is None and none:
-                found[each.name] = None
-            else:
-                found[each.name] = (
-                    _plain(given, kind, place) if shape is None else _array(given, kind, place, shape, sizes)
-                )
-        first = next((each for each in found.values() if isinstance(each, np.ndarray)), np.zeros(1))
+        try:
+            found: Self = TypeAdapter(cls).validate_python(data, context=sizes)
+        except ValidationError as error:
+            fault = error.errors()[0]
+            place = ".".join(map(str, (cls.NAME, *fault["loc"])))
+            raise ValueError(f"{place}: {fault['msg'].removeprefix('Value error, ')}") from None
+        has = vars(found)
+        first = next((each for each in has.values() if isinstance(each, np.ndarray)), np.zeros(1))
         if first.ndim == 1 and not (len(first) and np.all(np.diff(first) > 0.0)):
             raise ValueError(f"{cls.NAME} has no states in ascending order")
-        reached = {found[name] is not None for name in cls.END}
-        if cls.END and reached != {not found["reason"]}:
+        if cls.END and {has[name] is not None for name in cls.END} != {not has["reason"]}:
             raise ValueError(f"{cls.NAME} has to give {', '.join(cls.END)}, or else a reason")
-        return cls(**found)
-
-
-def _plain(given: Any, kind: str, place: str) -> Any:
-    """A number, truth or text of an annotation. Raises ValueError."""
-    if type(given) not in _PLAIN[kind] or (kind == "float" and not abs(given) <= COUNTABLE):
-        raise ValueError(f"{place} is no {kind}")
-    return float(given) if kind == "float" else given
-
-
-def _array(given: Any, kind: str, place: str, shape: str, sizes: dict[str, int]) -> Any:
-    """An array of an annotation and a shape, the first of which says how many states there are. Raises ValueError."""
-    try:
-        array = np.array(given)
-    except ValueError:
-        raise ValueError(f"{place} has rows of different lengths") from None
-    for letter, size in zip(shape, array.shape, strict=False):
-        sizes.setdefault(letter, size)
-    wanted = tuple(sizes.get(letter, 0) for letter in shape)
-    if array.size == 0 == math.prod(wanted):
-        array = np.zeros(wanted, dtype=bool if kind == "BoolArray" else int if kind == "IntArray" else float)
-    if array.shape != wanted:
-        raise ValueError(f"{place} is of shape {array.shape}, not {wanted}")
-    if array.dtype.kind not in _KINDS[kind] or not (abs(array) <= COUNTABLE).all():
-        raise ValueError(f"{place} has other entries than numbers up to {COUNTABLE:g}, or truths, as {kind} says")
-    return array.astype(float) if kind == "FloatArray" else array
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,11 +120,10 @@ class DrivenWall(InDetails):
     """
 
     NAME = "driven"
-    SHAPES: ClassVar = {"forces": "m3", "tensions": "b", "mechanism": "n3"}
-    reaction: float
-    forces: FloatArray
-    tensions: FloatArray
-    mechanism: FloatArray
+    reaction: Number
+    forces: Annotated[FloatArray, floats("m3")]
+    tensions: Annotated[FloatArray, floats("b")]
+    mechanism: Annotated[FloatArray, floats("n3")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,27 +144,17 @@ class FollowedWall(InDetails):
     """
 
     NAME = "followed"
-    SHAPES: ClassVar = {
-        "displacement": "k",
-        "value": "k",
-        "places": "kn3",
-        "forces": "km3",
-        "mechanisms": "kn3",
-        "closed": "m2",
-        "fallen": "n3",
-        "falling": "n3",
-    }
     END = ("falls", "fallen", "falling")
-    displacement: FloatArray
-    value: FloatArray
-    places: FloatArray
-    forces: FloatArray
-    mechanisms: FloatArray
-    closed: BoolArray
-    falls: float | None
-    fallen: FloatArray | None
-    falling: FloatArray | None
-    reason: str
+    displacement: Annotated[FloatArray, floats("k")]
+    value: Annotated[FloatArray, floats("k")]
+    places: Annotated[FloatArray, floats("kn3")]
+    forces: Annotated[FloatArray, floats("km3")]
+    mechanisms: Annotated[FloatArray, floats("kn3")]
+    closed: Annotated[BoolArray, truths("m2")]
+    falls: Number | None
+    fallen: Annotated[FloatArray, floats("n3")] | None
+    falling: Annotated[FloatArray, floats("n3")] | None
+    reason: StrictStr
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,23 +172,15 @@ class SupportPath(InDetails):
     """
 
     NAME = "support_path"
-    SHAPES: ClassVar = {
-        "displacement": "k",
-        "reaction": "k",
-        "slipping": "k",
-        "opened": "k",
-        "forces": "m3",
-        "mechanism": "n3",
-    }
     END = ("mechanism", "constant_from")
-    displacement: FloatArray
-    reaction: FloatArray
-    slipping: IntArray
-    opened: IntArray
-    forces: FloatArray
-    mechanism: FloatArray | None
-    constant_from: float | None
-    reason: str
+    displacement: Annotated[FloatArray, floats("k")]
+    reaction: Annotated[FloatArray, floats("k")]
+    slipping: Annotated[IntArray, integers("k")]
+    opened: Annotated[IntArray, integers("k")]
+    forces: Annotated[FloatArray, floats("m3")]
+    mechanism: Annotated[FloatArray, floats("n3")] | None
+    constant_from: Number | None
+    reason: StrictStr
 
 
 def path_answer(found: SupportPath | str) -> Answer:
@@ -218,14 +212,13 @@ class ShakenWall(InDetails):
     """
 
     NAME = "shaken"
-    SHAPES: ClassVar = {"time": "k", "places": "kn3", "fallen": "n"}
-    time: FloatArray
-    places: FloatArray
-    energy: float | None
-    fallen: BoolArray
-    at_rest: bool
-    engine: str
-    impact: float
+    time: Annotated[FloatArray, floats("k")]
+    places: Annotated[FloatArray, floats("kn3")]
+    energy: Number | None
+    fallen: Annotated[BoolArray, truths("n")]
+    at_rest: StrictBool
+    engine: StrictStr
+    impact: Number
 
 
 def check_followed(details: dict[str, Any], assembly: Assembly) -> None:

@@ -89,7 +89,7 @@ def test_what_is_no_such_field_is_refused(name: str, field: str):
         ("followed", {"displacement": [0.0, 2.0, 1.0]}, "no states in ascending order"),
         ("support_path", {"constant_from": None}, "has to give mechanism, constant_from, or else a reason"),
         ("shaken", {"time": [], "places": []}, "no states in ascending order"),
-        ("shaken", {"at_rest": None}, "at_rest is no bool"),
+        ("shaken", {"at_rest": None}, "at_rest: Input should be a valid boolean"),
     ],
 )
 def test_parts_belong_together(name: str, changes: dict[str, Any], words: str):
@@ -102,5 +102,5 @@ def test_parts_belong_together(name: str, changes: dict[str, Any], words: str):
 
 def test_an_answer_that_keeps_other_things_is_none():
     details = {"shaken": KEPT["shaken"].as_details()["shaken"] | {"places": [[0.0, 0.0, 0.0]]}}
-    with pytest.raises(AnswerFault, match=r"details cannot be used: shaken.places is of shape \(1, 3\)"):
+    with pytest.raises(AnswerFault, match=r"details cannot be used: shaken.places: of shape \(1, 3\)"):
         checked(Answer(Status.OK, Finding.STANDS, "It stands.", details=details), WALL)
