@@ -17,6 +17,7 @@ from drystone.cli.options import (
     fresh_flag,
     jobs_option,
     json_flag,
+    known_methods,
     memory_option,
     print_json,
     say,
@@ -37,8 +38,19 @@ if TYPE_CHECKING:
 
 
 @click.command("bench")
-@click.option("--set", "name", default="core", show_default=True, help=f"One of {', '.join(set_names())}.")
-@click.option("--methods", help=f"Separated by commas.  [default: {','.join(library().methods.compare)}]")
+@click.option(
+    "--set",
+    "name",
+    shell_complete=lambda _context, _parameter, begun: [each for each in set_names() if each.startswith(begun)],
+    default="core",
+    show_default=True,
+    help=f"One of {', '.join(set_names())}.",
+)
+@click.option(
+    "--methods",
+    shell_complete=known_methods,
+    help=f"Separated by commas.  [default: {','.join(library().methods.compare)}]",
+)
 @click.option(
     "--join",
     "others",

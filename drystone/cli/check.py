@@ -23,6 +23,7 @@ from drystone.cli.options import (
     junit_option,
     print_json,
     store_option,
+    suite_option,
     warn,
 )
 from harness.engine import baseline as recording
@@ -36,7 +37,7 @@ from harness.model.errors import InputError
 
 @click.command()
 @cases_argument
-@click.option("--suite", help="A suite of cases.  [default: all cases, or those of --cases]")
+@suite_option
 @click.option("--tier", type=click.Choice(["quick", "full"]), default="quick", show_default=True)
 @jobs_option
 @store_option
@@ -86,7 +87,7 @@ def check(
 @click.command()
 @click.argument("action", type=click.Choice(["show", "update"]), default="show")
 @cases_argument
-@click.option("--suite", help="A suite of cases.  [default: all cases, or those of --cases]")
+@suite_option
 @click.option("--reason", default="", help="The reason for an update; required.")
 @click.option("--file", "path", type=OUTPUT, help="The baseline.  [default: the one shipped]")
 @jobs_option

@@ -22,6 +22,7 @@ from drystone.cli.options import (
     jobs_option,
     json_flag,
     junit_option,
+    known_suites,
     live_option,
     load_case_option,
     memory_option,
@@ -53,7 +54,7 @@ from harness.model.load_cases import load_cases_of
 
 @click.command()
 @cases_argument
-@click.option("--suite", help='A suite of cases, or "all".  [default: small]')
+@click.option("--suite", shell_complete=known_suites, help='A suite of cases, or "all".  [default: small]')
 @methods_option(f"{','.join(library().methods.compare)} and those that checked references name")
 @click.option(
     "--study",

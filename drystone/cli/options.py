@@ -8,6 +8,7 @@ import json
 import math
 import os
 import sys
+import tomllib
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -61,6 +62,16 @@ def known_methods(_context: click.Context, _parameter: click.Parameter, begun: s
     return [CompletionItem(f"{before}{comma}{name}") for name in listed_methods() if name.startswith(last)]
 
 
+def known_suites(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[CompletionItem]:
+    """What a shell offers for a suite: those of the library that begin so."""
+    files = [(folder / "case.toml").read_text(encoding="utf-8") for folder in case_folders([shipped_cases()]).values()]
+    names = {"all", *(name for text in files for name in tomllib.loads(text).get("suites", []))}
+    return [CompletionItem(name) for name in sorted(names) if name.startswith(begun)]
+
+
+suite_option = click.option(
+    "--suite", shell_complete=known_suites, help="A suite of cases.  [default: all cases, or those of --cases]"
+)
 case_argument = click.argument("case", shell_complete=known_cases)
 cases_argument = click.argument("cases", nargs=-1, shell_complete=known_cases)
 

@@ -328,6 +328,9 @@ def test_the_process_of_a_command_ends_with_its_exit_code_and_all_that_it_wrote(
         (("compare", "single"), ["single-block"]),
         (("compare", "--methods", "fe,la-b"), ["fe,la-bound"]),
         (("factor", "--method", "fe-q"), ["fe-qp"]),
+        (("bench", "--methods", "fe-q"), ["fe-qp"]),
+        (("bench", "--set", "co"), ["core"]),
+        (("compare", "--suite", "sm"), ["small"]),
     ],
 )
 def test_a_shell_is_offered_methods_and_cases(words: tuple[str, ...], offered: list[str]):
