@@ -29,19 +29,19 @@ class ArcStart:
         gap: relative gap of the associated path at which the forces of its start are taken.
         spread: of the weights about their mean.
         gaps: of the path at which its mechanism is tried.
-        most_steps: Newton steps from one of them to the next.
+        least_steps: Newton steps from one of them to the next, or one a moving block where those are more.
     """
 
     smooth: float
     gap: float
     spread: float
     gaps: tuple[float, ...]
-    most_steps: int
+    least_steps: int
 
 
 _NEAR_PATH = (10.0, (1e-6, 1e-8), 600)
 _FAR_PATH = (np.inf, (1e-8, 1e-9, 1e-10), 2000)
-"""Spread, gaps and most steps of paths near the central one, and of those with the weights of their start."""
+"""Spread, gaps and steps of paths near the central one, and of those with the weights of their start."""
 
 NEAR = (ArcStart(0.3, 1e-3, *_NEAR_PATH), ArcStart(0.3, 1e-2, *_NEAR_PATH), ArcStart(0.45, 1e-2, *_NEAR_PATH))
 """Beginnings near the central path, which end low but do not always arrive."""
@@ -99,7 +99,7 @@ def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseStat
     quick = replace(exactness, shares=exactness.shares[:1])
     arc = ArcPath(guide, region.newton, start, arc_start.spread)
     for gap in arc_start.gaps:
-        path = arc.follow(gap, arc_start.most_steps)
+        path = arc.follow(gap, max(arc_start.least_steps, blocks))
         search.budget.stepped(path.iterations, blocks)
         if not path.converged:
             return None
