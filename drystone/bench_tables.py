@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from harness.engine.judge import COARSEST
 from harness.model.errors import InputError
+from harness.model.method import Finding
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -108,6 +110,8 @@ def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, An
         yield column, ~(pd.to_numeric(table[column], errors="coerce").between(0, 2**53))
 
 
+_FOUND = [str(finding) for finding in Finding if finding is not Finding.NONE]
+_WITH_MULTIPLIER = [str(finding) for finding in Finding if finding.has_multiplier]
 _NOT_SO: dict[str, Callable[[pd.DataFrame], Any]] = {
     "is correct and not answered, or the judge has not accepted it": lambda rows: (
         rows["correct"] & (~rows["answered"] | (rows["judge"] != "accepted"))
@@ -116,7 +120,22 @@ _NOT_SO: dict[str, Callable[[pd.DataFrame], Any]] = {
     "is answered in no CPU time": lambda rows: rows["answered"] & ~(rows["cpu_seconds"] > 0.0),
     "is an exact state without a multiplier": lambda rows: rows["exact"] & rows["multiplier"].isna(),
     "is proved and no exact state": lambda rows: rows["proved"] & ~rows["exact"],
+    "is proved and not answered, or the judge has not accepted it": lambda rows: (
+        rows["proved"] & (~rows["answered"] | (rows["judge"] != "accepted"))
+    ),
+    "is correct with a finding that is none": lambda rows: rows["correct"] & ~rows["finding"].isin(_FOUND),
+    "is correct with a multiplier that its finding does not have, or without the one it has": lambda rows: (
+        rows["correct"] & (rows["finding"].isin(_WITH_MULTIPLIER) != rows["multiplier"].notna())
+    ),
+    "has one end of a bracket": lambda rows: rows["lower"].isna() != rows["upper"].isna(),
     "has a bracket whose lower end is the higher": lambda rows: rows["lower"] > rows["upper"],
+    "is correct with a multiplier outside its bracket": lambda rows: (
+        rows["correct"]
+        & (
+            (rows["multiplier"] < rows["lower"] - COARSEST * rows["upper"].abs())
+            | (rows["multiplier"] > rows["upper"] + COARSEST * rows["upper"].abs())
+        )
+    ),
 }
 """What no row of a table can be, in words, and which rows are."""
 

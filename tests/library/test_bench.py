@@ -106,7 +106,18 @@ FORGED: list[tuple[dict[str, object], str]] = [
     ({"multiplier": math.nan}, "theirs on a is an exact state without a multiplier"),
     ({"proved": True, "exact": False}, "theirs on a is proved and no exact state"),
     ({"proved": True, "multiplier": 0.5}, "slow has a state of a at 0.4, below 0.5"),
+    ({"proved": True, "correct": False, "judge": "rejected"}, "theirs on a is proved and not answered, or the judge"),
+    ({"proved": True, "correct": False, "answered": False}, "theirs on a is proved and not answered, or the judge"),
+    ({"finding": "none"}, "theirs on a is correct with a finding that is none"),
+    ({"finding": math.nan}, "theirs on a is correct with a finding that is none"),
+    ({"finding": "stands"}, "theirs on a is correct with a multiplier that its finding does not have"),
+    (
+        {"exact": False, "multiplier": math.nan},
+        "theirs on a is correct with a multiplier .*, or without the one it has",
+    ),
+    ({"lower": 0.4}, "theirs on a has one end of a bracket"),
     ({"lower": 0.5, "upper": 0.4}, "theirs on a has a bracket whose lower end is the higher"),
+    ({"lower": 0.1, "upper": 0.2}, "theirs on a is correct with a multiplier outside its bracket"),
     ({"blocks": 4}, "a has different numbers of blocks"),
 ]
 
