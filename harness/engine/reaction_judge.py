@@ -81,7 +81,7 @@ def judge_plateau(
         path: of the reaction R, with its mechanism and the displacement from which it is said to be constant.
         gives_way: whether the supports move as prescribed; else backwards.
         tolerance: the largest residual that is acceptable.
-        extremes: least and greatest R of associated flow.
+        extremes: least and greatest R of associated flow; no reaction of the path lies outside.
     """
     forces, mechanism, begins = path.forces, path.mechanism, path.constant_from
     if mechanism is None or begins is None:
@@ -99,7 +99,7 @@ def judge_plateau(
     residuals |= {
         "reaction": abs(power(block_sums(assembly, forces), assembly.support_motion) - reaction) / work,
         "virtual_work": abs(sense * (power(assembly.dead, mechanism) - taken) - reaction) / work,
-        "extremes": max(0.0, low - reaction, reaction - high) / work,
+        "extremes": max(0.0, low - float(path.reaction.min()), float(path.reaction.max()) - high) / work,
         "constant": float(abs(path.reaction[constant] - reaction).max(initial=0.0)) / work,
         "plateau": float(not (begins >= 0.0 and constant.any())),
     }

@@ -237,6 +237,9 @@ def test_judge_rejects_what_is_no_plateau():
     assert not accepted(mechanism=2.0 * gives.mechanism)
     assert not accepted(mechanism=np.where(wall.assembly.fixed[:, None], gives.mechanism, 0.0))
     assert not accepted(extremes=(value + 0.01, 9.0))
+    on_the_way = np.arange(len(gives.reaction)) == 1  # its reaction is changing: the end is as it was
+    assert not accepted(reaction=np.where(on_the_way, 2.0 * gives.extremes[1], gives.reaction))
+    assert not accepted(reaction=np.where(on_the_way, 0.5 * gives.extremes[0], gives.reaction))
     elastic = support_path(wall.assembly, True, GapSpringsSettings(), SupportSteps(most=3))
     assert isinstance(elastic, SupportPath)
     assert not accepted(forces=elastic.forces, reaction=elastic.reaction, displacement=elastic.displacement)
