@@ -67,6 +67,8 @@ def bound(
     if found.assembly.crushes:
         remedy = "Leave compressive strength out: certificates are of joints that do not crush"
         raise InputError("some joints have compressive strength", remedy, case)
+    if found.assembly.support_motion.any():
+        raise InputError("some supports move", "Leave settlements out: certificates are of supports at rest", case)
     search = SearchSettings(effort=effort)
     attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
     if attempt.document is None:

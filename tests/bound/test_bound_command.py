@@ -43,6 +43,14 @@ def test_a_wall_that_no_live_load_moves_has_no_bound_and_is_told_why(tmp_path: P
     assert "cannot make the wall collapse" in answer.output
 
 
+def test_a_wall_whose_supports_move_has_no_certificate_and_is_refused(tmp_path: Path) -> None:
+    """One was written before, which `verify-bound --wall` refused."""
+    wall = wall_data(stack(1), 0.5, settlements=[{"blocks": ["base"], "translation": [0, -1]}])
+    answer, output = bound(tmp_path, wall)
+    assert (answer.exit_code, output.exists()) == (2, False)
+    assert "some supports move" in answer.output
+
+
 def test_of_a_wall_too_large_no_search_is_begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def searched(*arguments: Any) -> None:
         raise AssertionError("the search was begun")
