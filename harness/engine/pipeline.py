@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +13,11 @@ from harness.engine.judge import judge
 from harness.engine.provenance import judge_version
 from harness.engine.run import Analysed, Judge, Limits, Run
 from harness.engine.verdict import compare, overall
+from harness.model.answer_check import AnswerFault, checked
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.followed import check_followed
-from harness.model.result import Judgement, Result
+from harness.model.method import Answer
+from harness.model.result import Judgement, Result, result_of
 
 if TYPE_CHECKING:
     from harness.engine.store import Store
@@ -166,7 +167,7 @@ def judged(run: Run, result: Result, tolerance: float) -> Result:
     Raises:
         InputError: its arrays are not of the size of its wall.
     """
-    _fits(run, result)
+    result = _fitting(run, result)
     return _held(run, result.model_copy(update={"judge": _word(run, run.case.assembly, result, tolerance)}))
 
 
@@ -201,26 +202,30 @@ def _held(run: Run, result: Result) -> Result:
     return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
 
 
-def _fits(run: Run, result: Result) -> None:
-    """Refuse a result whose arrays are not of the size of its wall, as of a store that another hand has changed.
+_FOLLOWS = ("bracket_width", "bracket_wide", "blocks", "interfaces", "unknowns", "states")
+"""What of a result follows from its answer and its wall."""
+
+
+def _fitting(run: Run, result: Result) -> Result:
+    """A stored result held to what any answer for its wall has to be, with what follows from it derived anew.
 
     Raises:
-        InputError: naming the run and the array.
+        InputError: naming the run and what is wrong: a store may have been changed by another hand.
     """
-    blocks, interfaces = run.case.assembly.n_blocks, run.case.assembly.n_interfaces
+    element, remedy = f"the stored result of {run.method} on {run.case.id}", "Repeat the run with --fresh"
+    assembly = run.case.assembly
+    if result.method != run.method:
+        raise InputError(f"it is one of {result.method or 'no method'}", remedy, element)
+    blocks, interfaces = assembly.n_blocks, assembly.n_interfaces
     for name, rows in (("forces", interfaces), ("states", interfaces), ("mechanism", blocks)):
         listed = getattr(result, name)
         if listed is not None and len(listed) != rows:
-            raise InputError(
-                f"its {name} have {len(listed)} entries and its wall needs {rows}: it was not made for this wall",
-                "Repeat the run with --fresh",
-                f"the stored result of {run.method} on {run.case.id}",
-            )
+            problem = f"its {name} have {len(listed)} entries and its wall needs {rows}: it was not made for this wall"
+            raise InputError(problem, remedy, element)
     try:
-        check_followed(result.details, run.case.assembly)
-    except ValueError as error:
-        raise InputError(
-            f"its details cannot be used: {error}",
-            "Repeat the run with --fresh",
-            f"the stored result of {run.method} on {run.case.id}",
-        ) from None
+        answer = checked(Answer(**{each.name: getattr(result, each.name) for each in fields(Answer)}), assembly)
+    except AnswerFault as error:
+        raise InputError(f"it cannot be used: {error.problem}", remedy, element) from None
+    kept = {name: getattr(result, name) for name in ("case", "method", "family", "traits")}
+    anew = result_of(answer, assembly, **kept)
+    return result.model_copy(update={name: getattr(anew, name) for name in _FOLLOWS})

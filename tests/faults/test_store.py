@@ -16,11 +16,13 @@ from typing import Any
 import pytest
 
 from harness.engine.compare import comparison_run, recall, remember
-from harness.engine.pipeline import execute, judged
+from harness.engine.executors import LocalExecutor
+from harness.engine.pipeline import execute, executed, judged
 from harness.engine.plan import plan_case
-from harness.engine.run import Limits
+from harness.engine.run import Limits, Run
 from harness.engine.store import SCHEMA_VERSION, open_store
 from harness.model.errors import InputError
+from harness.model.result import Result
 from tests.commands import drystone
 from tests.walls import case, stack
 
@@ -181,14 +183,53 @@ def test_a_damaged_comparison_is_told(store: Path, text: str):
 @pytest.mark.parametrize("name", ["forces", "states", "mechanism"])
 def test_arrays_of_another_wall_are_told(whole: Path, name: str):
     """A fuzzed store held a result without forces for a wall with interfaces; the judge met arrays of unlike shapes."""
-    with open_store(whole, read_only=True) as opened:
-        compared = recall(opened)
-    assert compared is not None
-    (found, *_) = compared.cases[0].results
-    run = plan_case(compared.cases[0].case, ["la"], Limits(60.0))[0]
+    run, found = stored(whole)
     for wrong in ([], getattr(found, name)[1:]):
         with pytest.raises(InputError, match=f"the stored result of la on made-up: its {name} have"):
             judged(run, found.model_copy(update={name: wrong}), 1e-9)
+
+
+def stored(whole: Path) -> tuple[Run, Result]:
+    with open_store(whole, read_only=True) as opened:
+        compared = recall(opened)
+    assert compared is not None
+    return plan_case(compared.cases[0].case, ["la"], Limits(60.0))[0], compared.cases[0].results[0]
+
+
+def test_a_stored_result_is_held_to_what_an_answer_has_to_be(whole: Path):
+    """Each ended the report with a traceback, or was shown as it is, where its seal was taken off or made anew."""
+    run, found = stored(whole)
+    assert judged(run, found, 1e-9).judge.accepted
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"details": {"histories": 5}}, "histories"),
+        ({"details": {"start_values": ["a"]}}, "start_values"),
+        ({"path": {"multiplier": [1.0, 2.0], "displacement": [1.0]}}, "different lengths"),
+        ({"flow": "fine"}, 'flow rule "fine"'),
+        ({"iterations": -1}, "number of iterations"),
+        ({"multiplier": None}, "without a multiplier"),
+        ({"method": "fe"}, "it is one of fe"),
+    ]
+    for change, words in wrong:
+        with pytest.raises(InputError, match=f"the stored result of la on made-up: .*{words}"):
+            judged(run, found.model_copy(update=change), 1e-9)
+
+
+def test_what_follows_from_a_stored_answer_is_derived_anew(whole: Path):
+    run, found = stored(whole)
+    assert found.states is not None
+    own = {"blocks": 99, "interfaces": 0, "bracket_wide": True, "bracket_width": 0.5, "unknowns": -1}
+    again = judged(run, found.model_copy(update=own | {"states": ["stick"] * len(found.states)}), 1e-9)
+    assert again.states == found.states
+    assert {name: getattr(again, name) for name in own} == {name: getattr(found, name) for name in own}
+
+
+def test_a_study_judges_a_row_without_its_seal_anew(store: Path):
+    run, _ = stored(store)
+    change(store, EDITS["multiplier"].replace("json_set(result", "json_set(json_remove(result, '$.seal')"))
+    with open_store(store) as opened:
+        ((_, result, was_stored),) = executed([run], opened, LocalExecutor(1), whole=False)
+    assert was_stored
+    assert (result.multiplier, result.judge.accepted) == (9.5, False)
 
 
 def test_a_run_of_a_wall_that_the_comparison_does_not_have_is_told(store: Path):
