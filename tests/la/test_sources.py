@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,13 @@ import pytest
 
 from drystone import library_wall
 from harness.model.build import build
+from harness.model.joint_law import JointLaw
 from methods.la.certify.proof import prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import make_problem
 from methods.la.core.programmes import StaticProgramme
+from methods.la.interior.copies import path_ends
+from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, explore
@@ -160,6 +164,30 @@ def test_central_paths_with_other_block_weights_lead_to_states_that_none_of_the_
     without, found = (LimitAnalysis().solve(wall, SearchSettings(starts=starts)).multiplier for starts in (0, None))
     assert without == pytest.approx(223 / 330, abs=1e-9)
     assert found == pytest.approx(24 / 37, abs=1e-9)
+
+
+@pytest.mark.parametrize("cohesion", [0.0, 0.1])
+def test_paths_of_copies_end_where_each_alone_does(cohesion: float) -> None:
+    """Each copy has its own step: what others weigh does not change where it ends, nor do the corrections left out."""
+    wall = running_bond(5, 4, 0.2, 0.65)
+    problem = make_problem(wall)
+    constant = np.tile([0.0, 0.0, cohesion, cohesion], (wall.n_interfaces, 1))
+    problem = replace(problem, law=JointLaw(problem.friction, np.zeros(wall.n_interfaces), constant))
+    newton = NewtonMatrix(problem)
+    weights = np.random.default_rng(1).uniform(0.6, 1.4, (6, wall.n_free))
+    dead = problem.dead * np.repeat(weights, 3, axis=1)
+    slack, rates, steps = path_ends(problem, newton, dead, 1e-6)
+    assert len(slack) == len(dead)
+    alone = [path_ends(problem, newton, dead[k : k + 1], 1e-6) for k in range(len(dead))]
+    assert steps == sum(of_one for _, _, of_one in alone)
+    order = [int(abs(slack - one[0]).max(axis=(1, 2)).argmin()) for one, _, _ in alone]
+    assert sorted(order) == list(range(len(dead)))
+    for k, place in enumerate(order):
+        single = follow_path(
+            replace(problem, dead=dead[k]), newton, start_point(problem), PathSettings(gap=1e-6, residual=1e-5)
+        )
+        assert abs(slack[place] - alone[k][0][0]).max() <= 1e-6
+        assert ((rates[place] >= slack[place]) == (single.point.rates >= single.point.slack)).all()
 
 
 def test_forces_of_the_least_multiplier_do_not_hang_on_where_the_solver_comes_from():

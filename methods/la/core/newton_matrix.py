@@ -125,9 +125,9 @@ class NewtonMatrix:
         self._used = ((row >= 0) & (col >= 0)).ravel()
         key = col.ravel()[self._used] * self.size + row.ravel()[self._used]
         unique, self._slot = np.unique(key, return_inverse=True)
-        self._indices = (unique % self.size).astype(np.int32)
+        self._indices = unique % self.size
         counts = np.bincount(unique // self.size, minlength=self.size)
-        self._pointers = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+        self._pointers = np.concatenate([[0], np.cumsum(counts)])
         self._diagonal = np.flatnonzero(unique % self.size == unique // self.size)
         self._n_values = len(unique)
 
@@ -151,9 +151,34 @@ class NewtonMatrix:
             if not factors.factorise(symmetric=bool((flexibility == flexibility.transpose(0, 2, 1)).all())):
                 raise SingularMatrix("the Newton matrix is singular")
             return NewtonFactor(factors, self.order)
-        matrix = sp.csc_matrix((values, self._indices, self._pointers), shape=(self.size, self.size))
+        return self._by_columns(values, self._indices, self._pointers, self.order)
+
+    def factorise_copies(self, flexibility: FloatArray, relative: float) -> NewtonFactor:
+        """LU factors of K of copies of a wall, as of one matrix; of a single copy if that is `large`.
+
+        Args:
+            flexibility: (k, m, 3, 3).
+            relative: regularisation relative to the diagonal.
+
+        Raises:
+            SingularMatrix: one of them is singular to rounding.
+        """
+        if len(flexibility) == 1:
+            return self.factorise(flexibility[0], relative)
+        copy = np.arange(len(flexibility))[:, None]
+        products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows)).reshape(len(copy), -1)
+        slot = (self._slot + self._n_values * copy).ravel()
+        values = cast(FloatArray, np.bincount(slot, products[:, self._used].ravel(), len(copy) * self._n_values))
+        diagonal = (self._diagonal + self._n_values * copy).ravel()
+        values[diagonal] += relative * np.maximum(abs(values[diagonal]), 1e-30)
+        indices = (self._indices + self.size * copy).ravel()
+        pointers = np.append((self._pointers[:-1] + self._n_values * copy).ravel(), len(values))
+        return self._by_columns(values, indices, pointers, (self.order + self.size * copy).ravel())
+
+    def _by_columns(self, values: FloatArray, indices: IntArray, pointers: IntArray, order: IntArray) -> NewtonFactor:
+        matrix = sp.csc_matrix((values, indices.astype(np.int32), pointers.astype(np.int32)), shape=(len(order),) * 2)
         options = {"SymmetricMode": True}
-        return NewtonFactor(sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), self.order)
+        return NewtonFactor(sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), order)
 
     def _assembled(self, flexibility: FloatArray) -> FloatArray:
         """The entries of K for flexibilities (m, 3, 3), where they stand in the factor."""

@@ -56,7 +56,7 @@ class Sizes:
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree finishes within its nodes.
-        starts: with other weights, up to few blocks; half as many up to some.
+        starts: with other weights, up to few blocks; a third up to some.
         continuation, fine_continuation: factors on friction: mechanisms found at each are carried on. The fine one
             first goes down from above the friction of the wall.
     """
@@ -66,7 +66,7 @@ class Sizes:
     descended: int = 1000
     provable: int = 16
     provable_ring: int = 30
-    starts: int = 24
+    starts: int = 96
     continuation: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
     fine_continuation: tuple[float, ...] = (
         *(1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5),
@@ -83,13 +83,12 @@ class Sizes:
             return SearchLimits(0, 8, 200, descents, nodes=min(nodes, 100), breakpoints=300, unbounded_breakpoints=300)
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
-            return SearchLimits(
-                100, 40, 200, 8, self.fine_continuation, nodes, 3 * nodes, nodes, 1_000_000, 1e7, 100_000, 100_000
-            )
+            work = 2 * self.starts, 40, 200, 8, self.fine_continuation, nodes, 3 * nodes, nodes
+            return SearchLimits(*work, 1_000_000, 1e7, 100_000, 100_000)
         if blocks <= self.few_blocks:
             return SearchLimits(self.starts, 12, 200, 3, self.continuation, nodes)
         if blocks <= self.some_blocks:
-            return SearchLimits(self.starts // 2, 12, 200, 3, self.continuation[::2], nodes)
+            return SearchLimits(self.starts // 3, 12, 200, 3, self.continuation[::2], nodes)
         if descents:
             return SearchLimits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
         return SearchLimits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)

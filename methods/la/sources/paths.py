@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -118,27 +117,33 @@ class OtherWeights:
     Attributes:
         spread: weights are between 1 - spread and 1 + spread times those of the wall.
         factor: on the friction of the unloaded joints.
+        blocks_at_once: of all copies that are followed together; many more leave the cache of a processor.
     """
 
     name: ClassVar[str] = "other block weights"
     spread: float = 0.6
     factor: float = 0.3
+    blocks_at_once: int = 1000
 
     def applies(self, problem: Problem) -> bool:
         """On every wall."""
         return True
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state a path that leads to a mechanism which forces of the wall fit."""
+        """One state a mechanism that paths end at and forces of the wall fit."""
         guide = with_reduced_friction(search.problem, self.factor) or search.problem
-        blocks = search.problem.n_velocities // 3
-        for _ in range(search.budget.limits.starts):
-            if not search.budget.steps_left(search.record.known):
-                return
-            shares = search.generator.uniform(1.0 - self.spread, 1.0 + self.spread, size=blocks)
-            other = search.varied(replace(guide, dead=guide.dead * np.repeat(shares, 3)))
-            with suppress(SingularMatrix):  # It ends one path, not the search.
-                state = search.interior(other)
+        blocks, left = search.problem.n_velocities // 3, search.budget.limits.starts
+        at_once = 1 if search.newton.large else max(self.blocks_at_once // blocks, 1)
+        tried: set[bytes] = set()
+        while left > 0 and search.budget.steps_left(search.record.known):
+            count = min(at_once, left)
+            left -= count
+            shares = search.generator.uniform(1.0 - self.spread, 1.0 + self.spread, size=(count, blocks))
+            dead = guide.dead * np.repeat(shares, 3, axis=1)
+            for slack, rates in search.ends_of_copies(guide, dead):
+                moving = np.packbits(rates >= slack).tobytes()
+                state = search.nearest_state(slack, rates) if moving not in tried else None
+                tried.add(moving)
                 if state is not None:
                     yield state
 

@@ -8,7 +8,7 @@ it if lower. Every draw comes from a seeded generator, and effort is counted in 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -20,6 +20,7 @@ from methods.la.core.problem import Problem
 from methods.la.core.programmes import KinematicProgramme, StaticProgramme
 from methods.la.core.state import CollapseState, moving_contacts, residuals, tight_contacts
 from methods.la.interior.associated import AssociatedResult, EndOfPath, solve_associated
+from methods.la.interior.copies import path_ends
 from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.interior.interior_starting_point import phase_one_forces
 from methods.la.interior.newton_step import Point
@@ -233,9 +234,15 @@ class Search:
         result = self.follow(start_point(self.problem), self.choices.central)
         return None if result.gap > self.choices.widest_gap else result
 
-    def interior(self, guide: Search | None = None) -> CollapseState | None:
-        """The exact state nearest to where the interior point leads from the centred start, here or on a guide."""
-        end = (guide or self).path_end()
+    def ends_of_copies(self, guide: Problem, dead: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """Slacks and rates (m, 4) where central paths of copies of a guide with dead loads (k, 3n) arrive."""
+        slack, rates, steps = path_ends(guide, self.newton, dead, self.choices.widest_gap)
+        self.stepped(steps)
+        return zip(slack, rates, strict=True)
+
+    def interior(self) -> CollapseState | None:
+        """The exact state nearest to where the interior point leads from the centred start."""
+        end = self.path_end()
         return None if end is None else self.nearest_state(end.point.slack, end.point.rates)
 
     def as_one_block(self, state: CollapseState) -> CollapseState | None:
