@@ -19,7 +19,8 @@ falls                a dilatant mechanism, at rest on the supports, on which the
                      cohesion and tensile strength of the joints take and immense forces could do on its closings: no
                      equilibrium exists (Farkas); a measured motion is no proof and is not judged
 unbounded            forces within the yield of dry joints that balance the live load alone, besides forces under the
-                     dead load: their sum bears any multiplier
+                     dead load: their sum bears any multiplier; without them rejected where the live load does work on
+                     a dilatant mechanism (`harness.engine.live_work`)
 
 A wall with ties or props comes with their tensions in the detail `bar_forces`; equilibrium, yield, flow and virtual
 work of all claims are those with them (`harness.engine.bar_checks`). A live load without end is borne by joints alone.
@@ -52,6 +53,7 @@ from harness.engine.brittle_checks import listed, motion_of_whole
 from harness.engine.judge_breaking import judge_breaking
 from harness.engine.judge_dead_load import judge_fall, judge_limit
 from harness.engine.judge_decision import NO_FORCES, apart, beyond_prestress, countable, decide, said_of
+from harness.engine.live_work import brings_down
 from harness.engine.measured_motion import motion_faults
 from harness.engine.residuals import (
     collapse_residuals,
@@ -359,6 +361,9 @@ def _judge_unbounded(assembly: Assembly, forces: FloatArray | None, result: Resu
     """Forces under the dead load, and forces that balance the live load alone: together they bear any multiplier."""
     growth = AnswerDetails(result.details).live_forces
     if forces is None or result.forces_multiplier or growth is None:
+        if brings_down(assembly):
+            sentence = "The live load does work on a dilatant mechanism, so that some multiplier brings the wall down."
+            return said_of(tolerance, False, sentence)
         lacking = "forces that balance the live load alone" if growth is None else "forces under the dead load"
         return said_of(
             tolerance, None, f"There is no proof that every live load is borne: the answer gives no {lacking}."

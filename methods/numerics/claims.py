@@ -40,7 +40,7 @@ def analysed(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
     Components have the ties and props of the wall as further joints (`harness.model.bars.with_bars_as_joints`).
     """
     rows, bars = with_bars_as_joints(assembly), assembly.bars
-    answer = with_proof(rows, analysed_apart(rows, lambda part: at_limit(part, solve(part)), bear))
+    answer = with_proof(rows, analysed_apart(rows, lambda part: _if_unbounded(part, at_limit(part, solve(part))), bear))
     return with_bar_forces(answer, bars, assembly.n_interfaces) if len(bars) else answer
 
 
@@ -229,21 +229,24 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
     """An answer with what proves its claim where statics alone can: forces that grow for ever, a dilatant mechanism.
 
     `details["live_forces"]` (m, 3) balance the live load alone, so that with forces under the dead load they bear any
-    multiplier; `details["dilatant_mechanism"]` (n, 3) shows that a wall falls whose motion was measured only. Where
-    there is none, or no time is left to find it, the answer stays as it is, and is not judged. A wall at its limit
-    has such a mechanism, whose multiplier is zero, and `details["dead_forces"]` (m, 3) dual to it.
+    multiplier; without them it is not converged. `details["dilatant_mechanism"]` (n, 3) shows that a wall falls whose
+    motion was measured only. Where there is none, or no time is left to find it, the answer stays as it is, and is not
+    judged. A wall at its limit has such a mechanism, whose multiplier is zero, and `details["dead_forces"]` (m, 3) dual
+    to it.
     """
     if answer.status is not Status.OK:
         return answer
-    return best_so_far(lambda: _proved(assembly, answer), lambda: answer)
+    return best_so_far(lambda: _proved(assembly, answer), lambda: _if_unbounded(assembly, answer, known=False))
 
 
 def _proved(assembly: Assembly, answer: Answer) -> Answer:
     """As `with_proof`; raises OutOfTime where the time is over."""
     if answer.finding is Finding.UNBOUNDED:
         growth = growing_forces(assembly)
+        if growth is None:
+            return _only_held(assembly, answer)
         forces = answer.forces if answer.forces_multiplier == 0.0 else admissible_forces(assembly, assembly.dead)
-        if growth is None or forces is None:
+        if forces is None:
             return answer
         return replace(
             answer, forces=forces, forces_multiplier=0.0, details=answer.details | {"live_forces": growth.tolist()}
@@ -255,12 +258,38 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
         shown = {"dead_forces": statics.forces.tolist(), "dilatant_mechanism": statics.mechanism.tolist()}
         return replace(answer, details=answer.details | shown)
     if answer.finding is Finding.FALLS and answer.flow == "approximate":
-        proof = dilatant_mechanism(assembly, assembly.dead)
+        tries = (dilatant_mechanism(assembly, assembly.dead, exact=exact) for exact in (True, False))
+        proof = next((found for found in tries if found is not None), None)
         if proof is None and assembly.strong:
             proof = _fall_of_strong(assembly)
         if proof is not None:
             return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
     return answer
+
+
+def _if_unbounded(assembly: Assembly, answer: Answer, known: bool = True) -> Answer:
+    """The answer, not converged where it is "unbounded" and statics does not say so; `known`: time is left to ask."""
+    if answer.status is not Status.OK or answer.finding is not Finding.UNBOUNDED:
+        return answer
+    if not known:
+        return _not_shown(answer, "The time was over before forces were sought that balance the live load alone")
+    shown = best_so_far(lambda: growing_forces(assembly) is not None, lambda: None)
+    if shown is None:
+        return _if_unbounded(assembly, answer, known=False)
+    return answer if shown else _only_held(assembly, answer)
+
+
+def _only_held(assembly: Assembly, answer: Answer) -> Answer:
+    """The answer of a wall that was held at every load tried, but whose live load alone no forces within yield bear."""
+    statics = best_so_far(lambda: greatest_multiplier(assembly), lambda: None)
+    reason = "Statics does not bear every multiplier: no forces within yield balance the live load alone"
+    return _not_shown(answer, reason if statics is None else f"{reason}, and up to {statics[0]:.7g} are in equilibrium")
+
+
+def _not_shown(answer: Answer, reason: str) -> Answer:
+    """The answer, not converged for a reason; the load that was held, if any, and its forces stay."""
+    sentence = f"not converged: {answer.sentence.rstrip('.')}. {reason}."
+    return replace(answer, status=Status.NOT_CONVERGED, finding=Finding.NONE, sentence=sentence)
 
 
 def _fall_of_strong(assembly: Assembly) -> FloatArray | None:

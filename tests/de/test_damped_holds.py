@@ -16,6 +16,7 @@ from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall
+from harness.model.wall import Wall
 from tests.de.answers import run, unbalanced, unyielding
 from tests.walls import assembly, running_bond, stack
 
@@ -195,6 +196,25 @@ def test_a_load_that_cannot_bring_it_down_is_unbounded_only_up_to_the_cap():
     assert answer.multiplier is None
     assert "held up to the cap" in answer.sentence
     assert answer.details["cap"] == pytest.approx(5.0)
+
+
+def test_a_load_that_is_held_up_to_the_cap_is_not_unbounded_where_statics_bears_less():
+    """lambda (mu + e - mu) W = mu W: 2223, with mu .5 and e = mu / 2223. A block beside it may decide first, at .5."""
+    near = [0.5 * (1.0 + 1.0 / 2223.0), -1.0]
+    blocks = [
+        {"id": name, "polygon": [[x, y], [x + width, y], [x + width, y + 0.2], [x, y + 0.2]], "fixed": name == "base"}
+        for name, x, y, width in (("base", -1.0, -0.2, 9.0), ("a", 0.0, 0.0, 1.0), ("b", 4.0, 0.0, 1.0))
+    ]
+    for push, finding in ((near, Finding.NONE), ([1.0, 0.0], Finding.COLLAPSES)):
+        live = {"body": [{"blocks": ["a"], "per_weight": near}, {"blocks": ["b"], "per_weight": push}]}
+        data = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.5, "blocks": blocks, "loads": {"live": live}}
+        answer = run(build(Wall.model_validate(data)).assembly)
+        assert answer.finding is finding
+        if finding is Finding.NONE:
+            assert answer.status is Status.NOT_CONVERGED
+            assert "up to 2223 are in equilibrium" in answer.sentence
+        else:
+            assert answer.multiplier == pytest.approx(0.5, rel=EXACT)
 
 
 def test_work_that_runs_out_is_not_called_converged():

@@ -242,12 +242,24 @@ def test_standing_is_shown_by_forces_unless_nothing_can_move():
 
 def test_what_an_answer_without_end_lacks_is_named():
     wall = block()
+    wall = replace(wall, live=wall.dead)
     forces = bed(wall, "a", 10.0, 10.0, 0.0)
     bare = Answer(Status.OK, Finding.UNBOUNDED, "", forces=forces)
     assert "forces that balance the live load alone" in said(wall, bare).sentence
     loaded = replace(bare, forces=None, details={"live_forces": forces.tolist()})
     assert "forces under the dead load" in said(wall, loaded).sentence
     assert said(wall, loaded).accepted is None
+
+
+@pytest.mark.parametrize("tilt", [1.0, 1e-3])
+def test_an_answer_without_end_is_rejected_where_its_live_load_drives_a_mechanism(tilt: float):
+    """A push to the right and down within 0.1 % of the cone of friction, mu .5, is borne 1000 times only."""
+    wall = block()
+    wall.live[wall.free] = WEIGHT * np.array([0.5 * (1.0 + tilt), -1.0, 0.0])
+    claim = Answer(Status.OK, Finding.UNBOUNDED, "", forces=bed(wall, "a", 10.0, 10.0, 0.0), forces_multiplier=0.0)
+    assert said(wall, claim).accepted is False
+    wall.live[wall.free, 0] *= (1.0 - tilt) / (1.0 + tilt)
+    assert said(wall, claim).accepted is None
 
 
 def test_collapse_without_forces_or_without_a_multiplier_names_what_lacks():

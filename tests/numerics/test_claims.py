@@ -96,3 +96,11 @@ def test_blocks_without_dead_load_that_are_pushed_collapse_at_zero_and_do_not_fa
         load_method("la-associated"), assembly(pattern, 0.8, loads=loads, thickness=1.37, unit_weight=20.04)
     )
     assert (result.finding, result.multiplier) == (Finding.COLLAPSES, pytest.approx(0.0))
+
+
+def test_a_fall_by_little_that_was_measured_is_proved_by_a_mechanism_to_rounding():
+    """On a slope of .0125 with a friction 1e-5 below: the dead load does work 1e-7, as do closings of 1e-14 at 1e7."""
+    loads = {"gravity": [0.0125, -1.0], "live": None}
+    wall = assembly(running_bond(3, 2, 0.5, 0.25), 0.0125 * (1.0 - 1e-5), loads=loads)
+    result, judgement = answered(load_method("fe"), wall)
+    assert (result.finding, judgement.accepted) == (Finding.FALLS, True)
