@@ -39,8 +39,18 @@ def outside_range(bars: Bars, beyond: FloatArray) -> FloatArray:
 
 def dissipated_by_bars(assembly: Assembly, mechanism: FloatArray) -> float:
     """Power that bars take beyond what their prestress gives [force x velocity]: at yield, or where they go slack."""
-    rate = assembly.bars.elongations(mechanism, assembly.centroid)
+    rate = _elongations(assembly, mechanism)
     return float(np.maximum(assembly.bars.greatest * rate, assembly.bars.least * rate).sum())
+
+
+def _elongations(assembly: Assembly, mechanism: FloatArray) -> FloatArray:
+    """(k,) elongation rates, zero where they are rounding of the speeds of the two ends, whatever the yield force."""
+    bars, speeds = assembly.bars, np.zeros(len(assembly.bars))
+    for block, point in ((bars.block_a, bars.end1), (bars.block_b, bars.end2)):
+        arm = abs(point) + abs(assembly.centroid[block])
+        speeds += abs(mechanism[block, :2]).sum(axis=1) + abs(mechanism[block, 2]) * arm.sum(axis=1)
+    rate = bars.elongations(mechanism, assembly.centroid)
+    return np.where(abs(rate) <= np.finfo(float).eps * speeds, 0.0, rate)
 
 
 def bars_at_work(
@@ -50,7 +60,7 @@ def bars_at_work(
 
     A bar lengthens at its greatest tension alone and shortens at its least alone.
     """
-    rate = assembly.bars.elongations(mechanism, assembly.centroid)
+    rate = _elongations(assembly, mechanism)
     slack = np.where(rate > 0.0, assembly.bars.greatest - beyond, beyond - assembly.bars.least)
     at_fault = np.minimum(abs(slack) / scale, abs(rate)).max(initial=0.0)
     return float(at_fault), float(abs(slack * rate).sum())

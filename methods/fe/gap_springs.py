@@ -30,6 +30,7 @@ from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.pressed_search import by_strips
 from methods.numerics.residual_strength import by_component
+from methods.numerics.statics import admissible_forces
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.path_record import PathEnd
@@ -148,8 +149,11 @@ class GapSprings(Solver):
 def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibrium, lost: Answer) -> Answer:
     """The plateau that ordinary Newton reaches where every exact path was lost, or else the answer that says so.
 
-    Among them are walls at their limit under the dead load, which move at any live load: no path leads off them.
+    Among them are walls at their limit under the dead load, which move at any live load: no path leads off them; and
+    walls that fall under it by less than is seen beside what their ties and props could bear, which have no plateau.
     """
+    if admissible_forces(model.assembly, model.assembly.dead) is None:
+        return lost
     newton = NewtonSettings()
     model = replace(model, history=gravity.history)
     first_step = newton.first_step * _unit(model.assembly)

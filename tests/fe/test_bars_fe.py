@@ -151,3 +151,26 @@ def test_fall_of_joints_with_strength_is_proved():
     assert found(wall).finding is Finding.FALLS
     held = assembly(stack(1, 1.0, 0.2), 0.5, cohesion=2.5, loads=slope)
     assert found(held).finding is Finding.STANDS
+
+
+@pytest.mark.parametrize("name", ["la", "fe"])
+def test_a_tie_that_bears_far_more_than_it_needs_does_no_work_by_the_rounding_of_its_elongation(name: str):
+    """Pressed by the tie T the block turns about the end of the tie and slides: W b/2 + mu W z = lambda W (z - h/2)."""
+    data = block(0.7, ties=[bar(("left", SIDE), ("block", BLOCK), 1e8)])
+    assert found(built(data), name).multiplier == pytest.approx((0.2 + 0.7 * 1.8) / 0.8, rel=EXACT)
+
+
+def test_a_wall_that_its_prestress_topples_has_no_plateau_beside_a_yield_force_of_millions_of_loads():
+    """Statics bears nothing below .033; residuals beside 9e7 kN took gravity for borne, and 3.617 for the collapse."""
+    width, height = 0.6221775917008368, 0.7452255215826123
+    tie = bar(
+        ("base", [-2.975846138213499, -0.34006227896601604]),
+        ("2", [0.0, 1.1806571365616412]),
+        91642899.57258567,
+        prestress=5.921595944948144,
+        stiffness=8707.112510382283,
+    )
+    pattern = stack(2, width, height) | {"base": [-3.0, 5.0]}
+    wall = assembly(pattern, 0.8676499600791621, ties=[tie])
+    answer, _ = answered(load_method("fe"), wall)
+    assert answer.multiplier is None
