@@ -50,7 +50,8 @@ from harness.model.displaced import DisplacedState
 from harness.model.result import fastest_vertex, relative_velocities
 
 AT_REST = 1e-12
-"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds.
+"""A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds; so is a
+block beside the fastest of its component where the dead loads that move are summed.
 
 Live work is none up to this share of what the live loads would do along the motions of their blocks."""
 
@@ -347,6 +348,7 @@ def _mechanism_residuals(
     if live_work > 0.0:
         by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
         speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
+        speed[speed <= AT_REST * speed.max()] = 0.0
         moved = float((magnitudes(assembly, assembly.dead) * speed).sum())
         unit = min(assembly.load_unit, moved / live_work) if moved > 0.0 else assembly.load_unit  # weightless blocks
         size = max(unit, abs(multiplier))
