@@ -85,6 +85,15 @@ def test_a_load_on_few_blocks_is_proved_to_be_borne_without_end():
         assert (result.finding, judgement.accepted) == (Finding.UNBOUNDED, True)
 
 
+def test_a_path_of_springs_goes_on_for_ever_beside_motions_without_stiffness():
+    """A soft motion was held at the last change of state, and a path in equilibrium at any multiplier called lost."""
+    force = {"block": "1.1", "at": [-0.0034252198880441315, 0.18358005435201766]}
+    load = {"live": {"points": [force | {"force": [0.03391643611607521, -0.9994246721795416]}]}}
+    pattern = running_bond(2, 4, 0.35882078763109954, 0.27649315851629586)
+    result, judgement = answered(load_method("fe"), assembly(pattern, 0.3450796169236702, loads=load))
+    assert (result.finding, judgement.accepted) == (Finding.UNBOUNDED, True)
+
+
 def test_blocks_without_dead_load_that_are_pushed_collapse_at_zero_and_do_not_fall():
     """Of a wall without gravity only fill on its top bears: the greatest multiplier is zero, and came out as -7e-37."""
     courses = [[0.5, 1, 1, 0.5], [1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5], [0.75, 1.5, 0.75], [1, 1, 1]]
