@@ -90,6 +90,7 @@ class _KnownDetails(BaseModel, defer_build=True):
     stopped_by_limit: bool = False
     proved_least: bool = False
     certified_bound: float = 0.0
+    cap: float | None = None
     lowest_moving: float | None = None
     start_values: list[float] | None = None
     histories: list[dict[str, Any]] | None = None

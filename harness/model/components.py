@@ -152,7 +152,7 @@ def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], be
     falls = [k for k, answer in enumerate(answers) if answer.status is Status.OK and answer.finding is Finding.FALLS]
     collapses = [k for k, answer in enumerate(answers) if answer.finding.has_multiplier]
     least = min((_upper_end(answers[k]) for k in collapses), default=np.inf)
-    failed = [k for k, a in enumerate(answers) if a.status is not Status.OK and a.details.get("cap", 0.0) < least]
+    failed = [k for k, a in enumerate(answers) if a.status is not Status.OK and AnswerDetails(a.details).cap < least]
     unbounded = [k for k, answer in enumerate(answers) if answer.finding is Finding.UNBOUNDED]
     if falls:
         deciding = falls[0]

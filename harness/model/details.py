@@ -84,6 +84,11 @@ class AnswerDetails:
         return None if found is None else int(found)
 
     @property
+    def cap(self) -> float:
+        """Of distinct elements: the greatest multiplier tried, where all were held up to it; else zero."""
+        return float(self.data.get("cap") or 0.0)
+
+    @property
     def stopped_by_limit(self) -> bool:
         """Of every method: whether the time limit ended it."""
         return bool(self.data.get("stopped_by_limit"))
