@@ -141,7 +141,7 @@ JUDGE = tuple(
     f"harness.engine.{name}"
     for name in (
         *("judge", "judge_breaking", "judge_dead_load", "judge_decision", "judge_law"),
-        *("bar_checks", "brittle_checks", "crushing", "measured_motion", "measures", "residuals"),
+        *("bar_checks", "brittle_checks", "crushing", "live_work", "measured_motion", "measures", "residuals"),
         *("motion_judge", "reaction_judge", "settled_judge"),
     )
 )

@@ -83,7 +83,7 @@ def test_no_answer_lies_between_extremes_that_are_rejected(asked: Any, lying: Ca
 
 def test_numbers_that_are_not_of_the_wall_are_refused(lying: Callable[[str, Lie], None]):
     lying("la-reaction", lambda details: details["driven"].update(mechanism=[[0.0, 0.0, 0.0]]))
-    with pytest.raises(InputError, match=r"details cannot be used: driven.mechanism is of shape \(1, 3\)"):
+    with pytest.raises(InputError, match=r"details cannot be used: driven.mechanism: of shape \(1, 3\)"):
         reactions(SETTLING)
 
 
