@@ -19,10 +19,9 @@ compare: $(READY)  ## run the main job: three methods on suite "small", judged, 
 # Tests of the report in a browser need Debian's chromium; without it they are left out, and said to be.
 BROWSER := $(shell command -v chromium 2>/dev/null)
 
-# Three workers on two processors: many tests wait for the commands that they start.
 test: $(TESTED)  ## pass the tests
 	$(if $(BROWSER),,@echo "chromium is not installed: the browser tests are left out")
-	$(RUN)/python -m pytest -n 3 --dist worksteal -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true -m "not slow$(if $(BROWSER),, and not browser)"
+	$(RUN)/python -m pytest -n 2 --dist worksteal -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true -m "not slow$(if $(BROWSER),, and not browser)"
 
 full: $(TESTED)  ## every test and every reference, the slow ones too
 	$(RUN)/python -m pytest
