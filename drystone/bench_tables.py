@@ -112,17 +112,19 @@ def _wrong_cells(table: pd.DataFrame, walls: set[str]) -> Iterator[tuple[str, An
 
 _FOUND = [str(finding) for finding in Finding if finding is not Finding.NONE]
 _WITH_MULTIPLIER = [str(finding) for finding in Finding if finding.has_multiplier]
+
+
+def _unaccepted(rows: pd.DataFrame) -> Any:
+    return ~rows["answered"] | (rows["judge"] != "accepted")
+
+
 _NOT_SO: dict[str, Callable[[pd.DataFrame], Any]] = {
-    "is correct and not answered, or the judge has not accepted it": lambda rows: (
-        rows["correct"] & (~rows["answered"] | (rows["judge"] != "accepted"))
-    ),
+    "is correct and not answered, or the judge has not accepted it": lambda rows: rows["correct"] & _unaccepted(rows),
     "is answered with another status than ok": lambda rows: rows["answered"] & (rows["status"] != "ok"),
     "is answered in no CPU time": lambda rows: rows["answered"] & ~(rows["cpu_seconds"] > 0.0),
     "is an exact state without a multiplier": lambda rows: rows["exact"] & rows["multiplier"].isna(),
     "is proved and no exact state": lambda rows: rows["proved"] & ~rows["exact"],
-    "is proved and not answered, or the judge has not accepted it": lambda rows: (
-        rows["proved"] & (~rows["answered"] | (rows["judge"] != "accepted"))
-    ),
+    "is proved and not answered, or the judge has not accepted it": lambda rows: rows["proved"] & _unaccepted(rows),
     "is correct with a finding that is none": lambda rows: rows["correct"] & ~rows["finding"].isin(_FOUND),
     "is correct with a multiplier that its finding does not have, or without the one it has": lambda rows: (
         rows["correct"] & (rows["finding"].isin(_WITH_MULTIPLIER) != rows["multiplier"].notna())

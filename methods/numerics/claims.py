@@ -236,7 +236,7 @@ def with_proof(assembly: Assembly, answer: Answer) -> Answer:
     """
     if answer.status is not Status.OK:
         return answer
-    return best_so_far(lambda: _proved(assembly, answer), lambda: _if_unbounded(assembly, answer, known=False))
+    return best_so_far(lambda: _proved(assembly, answer), lambda: _if_asked(answer))
 
 
 def _proved(assembly: Assembly, answer: Answer) -> Answer:
@@ -267,16 +267,20 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
     return answer
 
 
-def _if_unbounded(assembly: Assembly, answer: Answer, known: bool = True) -> Answer:
-    """The answer, not converged where it is "unbounded" and statics does not say so; `known`: time is left to ask."""
+def _if_unbounded(assembly: Assembly, answer: Answer) -> Answer:
+    """The answer, not converged where it is "unbounded" and statics does not say so."""
     if answer.status is not Status.OK or answer.finding is not Finding.UNBOUNDED:
         return answer
-    if not known:
-        return _not_shown(answer, "The time was over before forces were sought that balance the live load alone")
-    shown = best_so_far(lambda: growing_forces(assembly) is not None, lambda: None)
-    if shown is None:
-        return _if_unbounded(assembly, answer, known=False)
-    return answer if shown else _only_held(assembly, answer)
+    return best_so_far(
+        lambda: _only_held(assembly, answer) if growing_forces(assembly) is None else answer, lambda: _if_asked(answer)
+    )
+
+
+def _if_asked(answer: Answer) -> Answer:
+    """The answer where no time is left to ask statics: not converged where it is "unbounded"."""
+    if answer.finding is not Finding.UNBOUNDED:
+        return answer
+    return _not_shown(answer, "The time was over before forces were sought that balance the live load alone")
 
 
 def _only_held(assembly: Assembly, answer: Answer) -> Answer:

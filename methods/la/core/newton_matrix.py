@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.groups import groups_of
@@ -125,9 +126,9 @@ class NewtonMatrix:
         self._used = ((row >= 0) & (col >= 0)).ravel()
         key = col.ravel()[self._used] * self.size + row.ravel()[self._used]
         unique, self._slot = np.unique(key, return_inverse=True)
-        self._indices = unique % self.size
+        self._indices = (unique % self.size).astype(np.int32)
         counts = np.bincount(unique // self.size, minlength=self.size)
-        self._pointers = np.concatenate([[0], np.cumsum(counts)])
+        self._pointers = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         self._diagonal = np.flatnonzero(unique % self.size == unique // self.size)
         self._n_values = len(unique)
 
@@ -173,10 +174,14 @@ class NewtonMatrix:
         values[diagonal] += relative * np.maximum(abs(values[diagonal]), 1e-30)
         indices = (self._indices + self.size * copy).ravel()
         pointers = np.append((self._pointers[:-1] + self._n_values * copy).ravel(), len(values))
-        return self._by_columns(values, indices, pointers, (self.order + self.size * copy).ravel())
+        return self._by_columns(
+            values, indices.astype(np.int32), pointers.astype(np.int32), (self.order + self.size * copy).ravel()
+        )
 
-    def _by_columns(self, values: FloatArray, indices: IntArray, pointers: IntArray, order: IntArray) -> NewtonFactor:
-        matrix = sp.csc_matrix((values, indices.astype(np.int32), pointers.astype(np.int32)), shape=(len(order),) * 2)
+    def _by_columns(
+        self, values: FloatArray, indices: NDArray[np.int32], pointers: NDArray[np.int32], order: IntArray
+    ) -> NewtonFactor:
+        matrix = sp.csc_matrix((values, indices, pointers), shape=(len(order), len(order)))
         options = {"SymmetricMode": True}
         return NewtonFactor(sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), order)
 

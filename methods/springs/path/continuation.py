@@ -179,8 +179,8 @@ class PathFollower:
         strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.model.lift, self.state)
         return elastic <= self.options.mechanism.elastic * strain
 
-    def _goes_on(self, far: float = 1e4) -> bool:
-        """Whether a piece that rises stays in equilibrium `far` times as far as the path has come.
+    def _goes_on(self) -> bool:
+        """Whether a piece that rises stays in equilibrium as far as a mechanism moves that is the collapse.
 
         The states are those of the displacements there, not those of the piece, on which rates that are rounding of a
         soft motion do not count.
@@ -188,7 +188,7 @@ class PathFollower:
         model, way = self.model, self.direction
         if way.speed <= 0.0:
             return False
-        reach = far * max(abs(self.multiplier) / way.speed, self.extent / largest(way.velocity))
+        reach = self.options.mechanism.far * max(abs(self.multiplier) / way.speed, self.extent / largest(way.velocity))
         u, multiplier = self.u + reach * way.velocity, self.multiplier + reach * way.speed
         residual = model.residual(u, multiplier, self.history, model.states(u, self.history))
         return largest(residual) <= self.options.drift.lost * load_scale(model, multiplier)
