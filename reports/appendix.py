@@ -60,7 +60,7 @@ def assumptions(case: Case) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class MethodRow:
+class _MethodRow:
     """One method's answer."""
 
     method: str
@@ -72,7 +72,7 @@ class MethodRow:
 
 
 @dataclass(frozen=True)
-class SheetBlock:
+class _SheetBlock:
     """What is given of one free block."""
 
     name: str
@@ -147,12 +147,12 @@ def _loads(item: CaseResults) -> list[tuple[str, str, str]]:
     ]
 
 
-def _blocks(item: CaseResults) -> list[SheetBlock]:
+def _blocks(item: CaseResults) -> list[_SheetBlock]:
     assembly = item.case.assembly
     if assembly.n_free > _BLOCK_ROWS:
         return []
     return [
-        SheetBlock(
+        _SheetBlock(
             assembly.block_ids[k],
             numbers.plain(float(assembly.centroid[k, 0]), 4),
             numbers.plain(float(assembly.centroid[k, 1]), 4),
@@ -168,10 +168,10 @@ def _pair(load: FloatArray) -> str:
     return f"{numbers.plain(float(load[0]), 4)}, {numbers.plain(float(load[1]), 4)}"
 
 
-def _method_row(result: Result) -> MethodRow:
+def _method_row(result: Result) -> _MethodRow:
     worst = result.judge.worst
     answered = result.status is Status.OK
-    return MethodRow(
+    return _MethodRow(
         method=result.method,
         value=value_in_words(result) if answered else f"{labels.STATUS[result.status][1]}: {result.sentence}",
         number_is=result.traits.caption,

@@ -102,7 +102,7 @@ TABLES = {
     "harness/formats/registry.py: Format",
     "harness/model/bar_forces.py: TableColumn",
     "reports/charts/dots.py: Mark",
-    "reports/charts/families.py: Parameter",
+    "reports/charts/families.py: _Parameter",
     "reports/drawing/looks.py: Look",
     "reports/page/build.py: Mark",
     "reports/page/glance.py: Mark",

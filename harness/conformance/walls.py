@@ -31,7 +31,7 @@ def _stack_of(count: int, **more: Any) -> dict[str, Any]:
     return {"type": "stack", "width": 0.3, "height": 0.2, "count": count} | more
 
 
-def bond_of(count: int, bricks: int) -> dict[str, Any]:
+def _bond_of(count: int, bricks: int) -> dict[str, Any]:
     """A running bond of bricks 0.4 x 0.2, in so many courses."""
     return {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": count, "bricks": bricks}
 
@@ -41,7 +41,7 @@ CLOSED_FORMS = (
     ClosedForm("topple", _of_pattern(_stack_of(1), 3.0), 1.5, "b / h"),
     ClosedForm("stack-topples", _of_pattern(_stack_of(5), 0.7), 0.3, "b / (n h)"),
     ClosedForm("stack-slides", _of_pattern(_stack_of(5), 0.25), 0.25, "mu"),
-    ClosedForm("bond-slides", _of_pattern(bond_of(4, 3), 0.3), 0.3, "mu"),
+    ClosedForm("bond-slides", _of_pattern(_bond_of(4, 3), 0.3), 0.3, "mu"),
 )
 WITH_FEATURES = (
     ClosedForm("cohesion", _of_pattern(_stack_of(1), 0.4, cohesion=0.4), 0.5, "mu + c b / W"),
@@ -56,7 +56,7 @@ VIEWED = {
 PRESSED = _of_pattern(_stack_of(2), 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
 STANDING = _of_pattern(_stack_of(3), 0.5, loads={})
 FALLING = _of_pattern(_stack_of(2, offsets=[0.0, 0.2]), 0.5)
-LARGE = (_of_pattern(bond_of(25, 10), 0.65), _of_pattern(_stack_of(100), 0.65))
+LARGE = (_of_pattern(_bond_of(25, 10), 0.65), _of_pattern(_stack_of(100), 0.65))
 """Walls of 263 and 100 blocks for limits of time and memory: the second for a method that refuses the first."""
 
 

@@ -22,7 +22,7 @@ from harness.model.reading import validate
 from harness.model.result import Result
 from harness.model.writing import write_whole
 
-ROUNDING = 1e-8
+_ROUNDING = 1e-8
 """Relative change of a multiplier that counts as none: what differs between processors and library builds."""
 
 
@@ -110,7 +110,7 @@ def change(old: Value | None, new: Value, *, seeks_least: bool) -> tuple[Change,
         same = new.multiplier == old.multiplier
         return (Change.SAME if same else Change.WORSE), f"{text_of(old)} -> {text_of(new)}"
     difference = new.multiplier - old.multiplier
-    if abs(difference) <= ROUNDING * max(1.0, abs(old.multiplier)):
+    if abs(difference) <= _ROUNDING * max(1.0, abs(old.multiplier)):
         return Change.SAME, text_of(new)
     better = seeks_least and difference < 0.0
     return (Change.BETTER if better else Change.WORSE), f"{text_of(old)} -> {text_of(new)} ({difference:+.2g})"

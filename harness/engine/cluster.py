@@ -28,21 +28,21 @@ CONNECT_SECONDS = 15.0
 """How long a scheduler is waited for at first."""
 _RETURN_SECONDS = 300.0
 """How long a scheduler that was lost is waited for."""
-LOST = (OSError, RuntimeError)
+_LOST = (OSError, RuntimeError)
 """What closing a client raises where the scheduler is gone: a connection closed or silent, an event loop that ended."""
 _MISSING = "it needs Dask: pip install 'drystone[cluster]'"
 
-CODE = "code of "
-Identity = dict[str, str]
+_CODE = "code of "
+_Identity = dict[str, str]
 
 
-def identity(methods: Collection[str]) -> Identity:
+def _identity(methods: Collection[str]) -> _Identity:
     """What must be the same on every machine: the code of the methods and the versions of what computes."""
     known = {name: number for name, number in versions().items() if name != "commit"}
-    return known | {f"{CODE}{method}": code_version(method) for method in sorted(methods)}
+    return known | {f"{_CODE}{method}": code_version(method) for method in sorted(methods)}
 
 
-def difference(ours: Identity, theirs: Identity) -> str:
+def _difference(ours: _Identity, theirs: _Identity) -> str:
     """What differs, as a sentence; empty if nothing does."""
     names = [name for name in ours if ours[name] != theirs.get(name)]
     return "; ".join(f"{name} is {theirs.get(name, 'missing')} there and {ours[name]} here" for name in names[:3])
@@ -69,7 +69,7 @@ class ClusterExecutor:
 
     def map(self, jobs: Iterable[Job], methods: Collection[str]) -> Generator[tuple[int, TimedResult]]:
         """See `harness.engine.executors.Executor`."""
-        ours = identity(methods)
+        ours = _identity(methods)
         coming, left = iter(jobs), dict[int, Job]()
         while True:
             client = self._connect(_RETURN_SECONDS)
@@ -82,11 +82,11 @@ class ClusterExecutor:
                     f"drystone: the scheduler was lost ({type(error).__name__}): waiting", file=sys.stderr, flush=True
                 )
             finally:
-                with suppress(*LOST):
+                with suppress(*_LOST):
                     client.close(timeout=5)
 
     def _through(
-        self, client: Any, coming: Iterator[Job], left: dict[int, Job], ours: Identity
+        self, client: Any, coming: Iterator[Job], left: dict[int, Job], ours: _Identity
     ) -> Generator[tuple[int, TimedResult]]:
         """Results through one client; `left` holds the jobs whose results have not been given."""
         under_way: dict[Any, int] = {}
@@ -132,15 +132,15 @@ class ClusterExecutor:
                 raise OSError(f"the connection is {client.status}")
             time.sleep(LOOK_SECONDS)
 
-    def _same_everywhere(self, client: Any, ours: Identity, methods: Collection[str]) -> None:
+    def _same_everywhere(self, client: Any, ours: _Identity, methods: Collection[str]) -> None:
         """Refuse workers of other code or versions before anything is run."""
         client.wait_for_workers(1, timeout=_RETURN_SECONDS)
-        for worker, theirs in client.run(identity, list(methods), on_error="return").items():
+        for worker, theirs in client.run(_identity, list(methods), on_error="return").items():
             if not isinstance(theirs, dict):
-                raise InputError(f"the worker {worker} has no Drystone of this kind ({theirs})", REMEDY, "--scheduler")
-            differs = difference(ours, theirs)
+                raise InputError(f"the worker {worker} has no Drystone of this kind ({theirs})", _REMEDY, "--scheduler")
+            differs = _difference(ours, theirs)
             if differs:
-                raise InputError(f"the worker {worker} computes otherwise: {differs}", REMEDY, "--scheduler")
+                raise InputError(f"the worker {worker} computes otherwise: {differs}", _REMEDY, "--scheduler")
 
     def _connect(self, seconds: float) -> Any:
         deadline = time.monotonic() + seconds
@@ -157,11 +157,11 @@ class ClusterExecutor:
                 time.sleep(0.5)
 
 
-REMEDY = "Install the same release, with the same versions, on every machine"
+_REMEDY = "Install the same release, with the same versions, on every machine"
 _slots: dict[str, Slots] = {}
 
 
-def _make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
+def _make_run(task: Task, case: str, theirs: _Identity) -> TimedResult:
     """Make one run in a child process of this worker.
 
     Args:
@@ -172,11 +172,11 @@ def _make_run(task: Task, case: str, theirs: Identity) -> TimedResult:
     Raises:
         InputError: this worker has other code or other versions.
     """
-    differs = difference(
-        theirs, identity([name.removeprefix("code of ") for name in theirs if name.startswith("code")])
+    differs = _difference(
+        theirs, _identity([name.removeprefix("code of ") for name in theirs if name.startswith("code")])
     )
     if differs:
-        raise InputError(f"a worker that joined computes otherwise: {differs}", REMEDY, "--scheduler")
+        raise InputError(f"a worker that joined computes otherwise: {differs}", _REMEDY, "--scheduler")
     with _with_children():
         context = start_context([task.method])
         slots = _slots.setdefault(task.method, Slots(context))

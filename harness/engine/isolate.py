@@ -42,7 +42,7 @@ _LONG_SECONDS = 10.0
 """A child that made a run this long makes no other: starting one costs nothing beside it, and its memory is clean."""
 
 
-MOST_READ = 4096
+_MOST_READ = 4096
 """Bytes that are read at the end of what a run printed."""
 
 
@@ -357,8 +357,8 @@ def _last_words(folder: Path) -> str:
     """The end of what a run printed; it may have printed more than memory holds."""
     try:
         with open(folder / "output.txt", "rb") as file:
-            file.seek(max(0, os.fstat(file.fileno()).st_size - MOST_READ))
-            lines = file.read(MOST_READ).decode("utf-8", "replace").strip().splitlines()
+            file.seek(max(0, os.fstat(file.fileno()).st_size - _MOST_READ))
+            lines = file.read(_MOST_READ).decode("utf-8", "replace").strip().splitlines()
     except OSError:
         return ""
     return f" It last printed: {visible(lines[-1])[:200]}" if lines else ""

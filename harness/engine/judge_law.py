@@ -23,30 +23,30 @@ def slacks(assembly: Assembly, forces: FloatArray) -> FloatArray:
     """(m, 4) what forces (m, 3) leave of the tension at both ends and of the shear both ways, negative beyond yield."""
     normal, shear = forces[:, :2], forces[:, 2]
     borne = borne_by_friction(assembly.friction, normal.sum(axis=1))
-    tension, cohesion = own_strength(assembly)
+    tension, cohesion = _own_strength(assembly)
     return np.column_stack([normal + tension, borne + shear + cohesion[:, 0], borne - shear + cohesion[:, 1]])
 
 
-def own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
+def _own_strength(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
     """(m, 2) tension T/2 that each end bears, and (m, 2) cohesion c A against negative and against positive shear."""
     return assembly.constant[:, :2], assembly.constant[:, 2:]
 
 
-def lift(assembly: Assembly, slip: FloatArray, flow: str = "associated") -> FloatArray:
+def _lift(assembly: Assembly, slip: FloatArray, flow: str = "associated") -> FloatArray:
     """(m,) opening of both ends by slips (m,): "associated", of the friction; else of the dilatancy of the wall."""
     return np.asarray((assembly.friction if flow == "associated" else assembly.dilatancy) * abs(slip))
 
 
 def beyond_lift(assembly: Assembly, opening: FloatArray, slip: FloatArray, flow: str = "associated") -> FloatArray:
-    """(m, 2) openings of the ends beyond the `lift` of the slips (m,); negative where they close below it."""
-    return np.asarray(opening - lift(assembly, slip, flow)[:, None])
+    """(m, 2) openings of the ends beyond the `_lift` of the slips (m,); negative where they close below it."""
+    return np.asarray(opening - _lift(assembly, slip, flow)[:, None])
 
 
 def dissipated_by_friction(assembly: Assembly, forces: FloatArray, slip: FloatArray, flow: str = "associated") -> float:
     """Power that friction takes on slips (m,) under forces (m, 3), less what the lift gives back [force x velocity]."""
     compression = forces[:, :2].sum(axis=1)
     borne = borne_by_friction(assembly.friction, compression)
-    return float((borne * abs(slip) - compression * lift(assembly, slip, flow)).sum())
+    return float((borne * abs(slip) - compression * _lift(assembly, slip, flow)).sum())
 
 
 def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatArray) -> float:
@@ -58,7 +58,7 @@ def dissipated_by_strength(assembly: Assembly, opening: FloatArray, slip: FloatA
             crush.
         slip: (m,) slips.
     """
-    tension, cohesion = own_strength(assembly)
+    tension, cohesion = _own_strength(assembly)
     ways, crushed = np.maximum(np.column_stack([slip, -slip]), 0.0), 0.0
     if assembly.crushes:
         tension = np.where(np.isfinite(assembly.crushing)[:, None], 0.0, tension)

@@ -26,11 +26,11 @@ from harness.model.geometry import shapes_of
 from harness.model.method import Finding
 from harness.model.result import Judgement
 
-STATES = 50
+_STATES = 50
 """States whose blocks are looked at for overlaps."""
-OVERLAP = 5e-3
+_OVERLAP = 5e-3
 """Overlap while blocks move: in a step of 1e-3 sqrt(size / g) two close by so much at 5 sqrt(size g)."""
-TIPPED = 0.5
+_TIPPED = 0.5
 """Cosine of the rotation of a block that has tipped over, 60 degrees."""
 
 
@@ -60,10 +60,10 @@ def judge_time_history(
         return said_of(tolerance, False, "Its numbers are not finite, or too large.")
     size = assembly.length_scale
     own = np.array([np.sqrt(shapely.Polygon(polygon).area) for polygon in assembly.polygons])
-    turned = (np.cos(places[:, :, 2]) < TIPPED) | (abs(places[:, :, 2]) > np.pi)
+    turned = (np.cos(places[:, :, 2]) < _TIPPED) | (abs(places[:, :, 2]) > np.pi)
     gone = np.any((turned | (places[:, :, 1] < -0.5 * own)) & ~assembly.fixed, axis=1)
     whole = int(np.argmax(gone)) if gone.any() else len(places)
-    looked_at = sorted({*np.linspace(0, whole - 1, STATES).astype(int).tolist()})
+    looked_at = sorted({*np.linspace(0, whole - 1, _STATES).astype(int).tolist()})
     end = places[-1]
     residuals = {
         "start": float(abs(places[0]).max()) / size,
@@ -84,7 +84,7 @@ def judge_time_history(
     elif finding is Finding.FALLS:
         higher = float(np.sum(assembly.weight[assembly.free] * end[assembly.free, 1])) > 0.0
         residuals["lifted"] = float(higher and not below)
-    within = {"overlap": max(OVERLAP, tolerance)}
+    within = {"overlap": max(_OVERLAP, tolerance)}
     failed = [f"{name} {value:.3g}" for name, value in residuals.items() if not value <= within.get(name, tolerance)]
     holds = f"not within {tolerance:g}: {', '.join(failed)}" if failed else f"they hold within {tolerance:g}"
     sentence = f"The wall was put together again from the places of its blocks; {holds}."

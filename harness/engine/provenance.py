@@ -18,7 +18,7 @@ from typing import Any
 from harness.model.foreign.register import program_named
 from harness.model.method import method_points
 
-PACKAGES = (
+_PACKAGES = (
     "drystone",
     "numpy",
     "scipy",
@@ -41,7 +41,7 @@ _REQUIREMENT = re.compile(r"""([\w.-]+)(?:.*extra == ["']([\w-]+)["'])?""")
 @functools.cache
 def versions() -> dict[str, str]:
     """Versions of Python, of the packages that compute, and the commit where the code is a checkout."""
-    found = {"python": platform.python_version()} | _installed(PACKAGES)
+    found = {"python": platform.python_version()} | _installed(_PACKAGES)
     commit = _commit()
     if commit:
         found["commit"] = commit

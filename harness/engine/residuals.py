@@ -49,7 +49,7 @@ from harness.model.components import Component, components_of
 from harness.model.displaced import DisplacedState
 from harness.model.result import fastest_vertex, relative_velocities
 
-AT_REST = 1e-12
+_AT_REST = 1e-12
 """A component slower than this beside the fastest of the wall is taken as at rest: rounding of its speeds; so is a
 block beside the fastest of its component where the dead loads that move are summed.
 
@@ -172,7 +172,7 @@ def displaced_fault(assembly: Assembly, state: DisplacedState) -> str:
     a, b = assembly.block_a[state.interface], assembly.block_b[state.interface]
     if not ((state.onto == a) | (state.onto == b)).all():
         return "a force acts on a block that does not belong to its joint"
-    if (abs(np.hypot(*state.normal.T) - 1.0) > AT_REST).any():
+    if (abs(np.hypot(*state.normal.T) - 1.0) > _AT_REST).any():
         return "a normal is not a unit vector"
     onto_b = np.where(state.onto == b, 1.0, -1.0)[:, None]
     if (abs(state.normal - onto_b * assembly.normal[state.interface]).max(axis=1, initial=0.0) > _TURNED).any():
@@ -217,7 +217,7 @@ def power(load: FloatArray, mechanism: FloatArray) -> float:
 
 
 def moving_parts(
-    assembly: Assembly, mechanism: FloatArray, at_rest: float = AT_REST
+    assembly: Assembly, mechanism: FloatArray, at_rest: float = _AT_REST
 ) -> tuple[float, list[tuple[Component, FloatArray]]]:
     """The speed of the supports beside the fastest vertex, and the components that move.
 
@@ -290,7 +290,7 @@ def scaled_to_live_work(assembly: Assembly, mechanism: FloatArray) -> tuple[Floa
     """The motion (n, 3) of a component of fastest vertex 1, larger where its live work is small, and that work."""
     live_work = power(assembly.live, mechanism)
     largest = _largest_working(assembly, mechanism)
-    if 0.0 < live_work < AT_REST * largest:
+    if 0.0 < live_work < _AT_REST * largest:
         return mechanism, 0.0
     if 0.0 < live_work < largest:
         return mechanism * (largest / live_work), largest
@@ -348,7 +348,7 @@ def _mechanism_residuals(
     if live_work > 0.0:
         by_virtual_work = (dissipation - power(assembly.dead, mechanism)) / live_work
         speed = np.hypot(*mechanism[:, :2].T) + abs(mechanism[:, 2]) * assembly.radius
-        speed[speed <= AT_REST * speed.max()] = 0.0
+        speed[speed <= _AT_REST * speed.max()] = 0.0
         moved = float((magnitudes(assembly, assembly.dead) * speed).sum())
         unit = min(assembly.load_unit, moved / live_work) if moved > 0.0 else assembly.load_unit  # weightless blocks
         size = max(unit, abs(multiplier))

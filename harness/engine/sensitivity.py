@@ -19,7 +19,7 @@ from harness.model.method import Status
 from harness.model.result import Result
 from harness.model.wall import Detection, Wall
 
-WIDEST = 0.1
+_WIDEST = 0.1
 """Greatest tolerance tried, in typical block sizes: 25 mm of mortar between bricks of 250 mm."""
 _A_DECADE = 8
 """Tolerances tried in a decade: neighbours differ by a third, less than surveys do."""
@@ -27,7 +27,7 @@ _A_DECADE = 8
 
 _MOST_LOOKED = 2000
 """Blocks of a wall whose tolerances are looked through unasked; for others `drystone validate` does it."""
-FINEST = 0.01
+_FINEST = 0.01
 """Tolerances finer than this part of the greatest one tried, a thousandth of a block, add nothing to the width of a
 plateau: no survey is that accurate, and drawings that are exact to all digits have one plateau anyway."""
 
@@ -64,9 +64,9 @@ def over_tolerance(wall: Wall, method: str = "", runs: Runs = Runs()) -> list[Pl
         wall = under_load_case(wall, next(iter(known)), known)
     detection = wall.interfaces if isinstance(wall.interfaces, Detection) else Detection()
     size = typical_block_size(wall)
-    decades = np.log10(WIDEST / DEFAULT_TOLERANCE)
+    decades = np.log10(_WIDEST / DEFAULT_TOLERANCE)
     tried: list[tuple[float, Case, Assembly | str]] = []
-    for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, WIDEST * size, round(decades * _A_DECADE) + 1).tolist():
+    for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, _WIDEST * size, round(decades * _A_DECADE) + 1).tolist():
         allowed = {"tolerance": tolerance, "greatest_gap": None, "greatest_overlap": None}
         joined = wall.model_copy(update={"interfaces": detection.model_copy(update=allowed)})
         case = Case(CaseFile(id="wall", title="wall", source="its joints at another tolerance"), joined, "")
@@ -89,7 +89,7 @@ def suggested(plateaus: list[Plateau]) -> tuple[float, Plateau] | None:
     """The middle of the widest plateau with joints, on a scale of ratios [length], and that plateau; None without."""
     if not plateaus:
         return None
-    finest = FINEST * plateaus[-1].high
+    finest = _FINEST * plateaus[-1].high
 
     def width(plateau: Plateau) -> float:
         return plateau.high / max(plateau.low, finest)

@@ -54,9 +54,9 @@ _FROM_VERSION_1 = (
     ),
 )
 """Brings a store of version 1 up to date; its results keep fields and environment inside `result`."""
-FIELDS = ("forces", "mechanism", "states", "path", "details")
+_FIELDS = ("forces", "mechanism", "states", "path", "details")
 """Parts of a result that are kept compressed beside it; they are most of its size."""
-ENVIRONMENT = ("versions", "machine", "traits", "limits")
+_ENVIRONMENT = ("versions", "machine", "traits", "limits")
 """Parts of a result that many runs share, kept once: limits and traits in each of 100,000 rows of 21 bricks made the
 file 210 MB instead of 140, as two of them filled a page instead of three."""
 _SOME_KEYS = 500
@@ -66,8 +66,8 @@ _SOME_KEYS = 500
 class Store:
     """An open result store. Every finished run is committed at once, so that killing the process loses none.
 
-    A run is one row: a few columns to filter and count by, the result as JSON text without its `FIELDS` and
-    `ENVIRONMENT`, the fields compressed beside it, and the environment once for all runs that share it.
+    A run is one row: a few columns to filter and count by, the result as JSON text without its `_FIELDS` and
+    `_ENVIRONMENT`, the fields compressed beside it, and the environment once for all runs that share it.
 
     Args:
         path: the file; made if there is none, unless it is only read.
@@ -215,8 +215,8 @@ class Store:
             InputError: the store cannot be written, with the cause.
         """
         data = result.model_dump(mode="json")
-        fields = {name: data.pop(name) for name in FIELDS}
-        shared = json.dumps({name: data.pop(name) for name in ENVIRONMENT}, sort_keys=True)
+        fields = {name: data.pop(name) for name in _FIELDS}
+        shared = json.dumps({name: data.pop(name) for name in _ENVIRONMENT}, sort_keys=True)
         environment = digest_of(shared)[:16]
         packed = zlib.compress(json.dumps(fields, separators=(",", ":")).encode())
         text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
@@ -233,7 +233,7 @@ class Store:
             )
 
     def summaries(self, keys: Collection[str]) -> dict[str, dict[str, Any]]:
-        """Results under keys as JSON values, without `FIELDS`; keys that are not there left out.
+        """Results under keys as JSON values, without `_FIELDS`; keys that are not there left out.
 
         Raises:
             InputError: the store or one of the results is damaged.

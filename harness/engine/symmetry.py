@@ -46,7 +46,7 @@ def mirrored(assembly: Assembly) -> Assembly:
     return _mapped(assembly, np.diag([-1.0, 1.0]), np.zeros(2), 1.0, True)
 
 
-def translated(assembly: Assembly) -> Assembly:
+def _translated(assembly: Assembly) -> Assembly:
     """Moved by some block sizes."""
     return _mapped(assembly, np.eye(2), assembly.length_scale * np.array([7.3, -4.1]), 1.0, False)
 
@@ -57,17 +57,17 @@ def turned(assembly: Assembly, angle: float) -> Assembly:
     return _mapped(assembly, np.array([[c, -s], [s, c]]), np.zeros(2), 1.0, False)
 
 
-def rotated(assembly: Assembly) -> Assembly:
+def _rotated(assembly: Assembly) -> Assembly:
     """The whole problem, loads included, turned by 0.7 rad."""
     return turned(assembly, 0.7)
 
 
-def scaled(assembly: Assembly) -> Assembly:
+def _scaled(assembly: Assembly) -> Assembly:
     """A thousand times as large, as if drawn in millimetres."""
     return _mapped(assembly, np.eye(2), np.zeros(2), 1000.0, False)
 
 
-def heavier(assembly: Assembly) -> Assembly:
+def _heavier(assembly: Assembly) -> Assembly:
     """All loads and strengths 250 times as great."""
     forces = ("weight", "dead", "live", "constant", "crushing")
     of_bars = ("prestress", "least", "greatest", "stiffness")
@@ -154,10 +154,10 @@ def beside(assembly: Assembly, share: float) -> Assembly:
 
 VIEWS: dict[str, Callable[[Assembly], Assembly]] = {
     "mirrored": mirrored,
-    "translated": translated,
-    "rotated": rotated,
-    "scaled": scaled,
-    "heavier": heavier,
+    "translated": _translated,
+    "rotated": _rotated,
+    "scaled": _scaled,
+    "heavier": _heavier,
     "renumbered": renumbered,
 }
 """Every view, by name."""

@@ -23,9 +23,9 @@ _SPIKE = 0.01
 """An outline that crosses itself is mended if that changes its area by less than this part: rounding folds the tip of a
 thin corner over, and no more."""
 
-LARGEST = 1e100
+_LARGEST = 1e100
 """Greatest coordinate: products of three of them are numbers still."""
-MOST_PAIRS = 300_000
+_MOST_PAIRS = 300_000
 """Pairs of parts of an outline, of lines or of outlines that may cross, at most: finding where they do takes a second
 or two then, and grows with their square. Parts of a drawing of stones meet a few others each."""
 _A_PART = 50
@@ -255,10 +255,10 @@ def finite(points: FloatArray, what: str) -> FloatArray:
     Raises:
         InputError: one of them is no number or too large to compute with.
     """
-    wrong = ~(np.abs(points) <= LARGEST)
+    wrong = ~(np.abs(points) <= _LARGEST)
     if wrong.any():
         raise InputError(
-            f"it has the coordinate {points[wrong][0]:g}", f"Give finite numbers of at most {LARGEST:g}", element=what
+            f"it has the coordinate {points[wrong][0]:g}", f"Give finite numbers of at most {_LARGEST:g}", element=what
         )
     return points
 
@@ -272,7 +272,7 @@ def _segments(points: FloatArray, *, closed: bool = True) -> np.ndarray:
 
 def _check_edges(ring: FloatArray, what: str) -> None:
     """`_check_pairs` of the edges of a closed line (k, 2)."""
-    if len(ring) ** 2 > MOST_PAIRS:
+    if len(ring) ** 2 > _MOST_PAIRS:
         _check_pairs(_segments(ring), what)
 
 
@@ -282,7 +282,7 @@ def _check_pairs(parts: np.ndarray, what: str) -> None:
     Raises:
         InputError: there are more pairs whose boxes meet than is looked into.
     """
-    most = max(MOST_PAIRS, _A_PART * len(parts))
+    most = max(_MOST_PAIRS, _A_PART * len(parts))
     if len(parts) ** 2 <= most:
         return
     tree, found = shapely.STRtree(parts), 0

@@ -24,13 +24,13 @@ from harness.model.json_text import read_bytes, text_of
 UNITS = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "km": 7, "yd": 10, "dm": 14}
 """$INSUNITS of the DXF reference by units of length."""
 
-CLOSED = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"}
-OPEN = {"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"}
-MOST_NESTED = 16
+_CLOSED = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"}
+_OPEN = {"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"}
+_MOST_NESTED = 16
 """Depth of blocks within blocks that is followed; a drawing that goes deeper is likely to contain itself."""
-FINEST = 1e-6
+_FINEST = 1e-6
 """Chords of a curve are no finer than this part of its extent: a thousand or two stand for a circle."""
-CLOSE = 1e-9
+_CLOSE = 1e-9
 """Ends of a curve are one point if they are no further apart than this part of its extent: rounding."""
 
 
@@ -82,9 +82,9 @@ class _Reading:
         Raises:
             InputError: blocks are nested too deeply.
         """
-        if depth > MOST_NESTED:
+        if depth > _MOST_NESTED:
             raise InputError(
-                f"its blocks are nested deeper than {MOST_NESTED}, or contain themselves",
+                f"its blocks are nested deeper than {_MOST_NESTED}, or contain themselves",
                 "Write them out (EXPLODE)",
                 f'block "{getattr(holder, "name", "")}"',
             )
@@ -158,7 +158,7 @@ class _Reading:
             for outer, holes in nested([self._points(path) for path in paths.from_hatch(entity)]):
                 self.drawing.add(kind, outer, holes, layer=layer)
             return
-        if kind not in CLOSED | OPEN:
+        if kind not in _CLOSED | _OPEN:
             self.drawing.left_out[f'{kind} on layer "{layer}": no outline'] += 1
             return
         try:
@@ -169,9 +169,9 @@ class _Reading:
         points = self._points(path)
         if len(points) < 2:
             self.drawing.left_out[f'{kind} on layer "{layer}": it is a point'] += 1
-        elif kind not in CLOSED or not (
+        elif kind not in _CLOSED or not (
             bool(getattr(entity, "is_closed", False))
-            or np.linalg.norm(points[-1] - points[0]) <= CLOSE * np.ptp(points, axis=0).max()
+            or np.linalg.norm(points[-1] - points[0]) <= _CLOSE * np.ptp(points, axis=0).max()
         ):
             self.lines.append((points, layer))
         elif self._across(path, points):
@@ -190,6 +190,6 @@ class _Reading:
         corners = finite(np.array([tuple(point) for point in path.control_vertices()], float), "a curve")
         if len(corners) == 0:
             return np.empty((0, 2))
-        accuracy = max(self.accuracy, FINEST * float(np.ptp(corners, axis=0).max()))
+        accuracy = max(self.accuracy, _FINEST * float(np.ptp(corners, axis=0).max()))
         points = np.array([tuple(point) for point in path.flattening(accuracy, segments=4)], float).reshape(-1, 3)
         return np.asarray(points[:, self.axes[:2]])

@@ -29,23 +29,23 @@ from harness.model.reading import parse_wall, validate
 from harness.model.units import METRES, LengthUnit
 from harness.model.wall import Wall
 
-FRICTION = 0.6
-UNIT_WEIGHT = 20.0
+_FRICTION = 0.6
+_UNIT_WEIGHT = 20.0
 """Taken where nothing is said: round values of dry stone [-, kN/m3], and shown as assumed with the answer."""
 
 
 _FINE = 0.02
 """Steps of rounding up to this part of a stone's size are taken for such; coarser ones are the module of the bond."""
-MOST = 0.95
+_MOST = 0.95
 """Part of the coordinates that lie on a grid when they are taken for rounded; mended corners lie beside it."""
-NEAR = 0.1
+_NEAR = 0.1
 """Stones nearer than this part of a stone's size are likely to be in contact: joints of dry masonry are 5 to 25 mm
 wide, and its stones 75 to 500 mm high."""
 
 
 _MOST_REASON = 200
 """Letters of what a parser says is wrong."""
-MOST_TOLD = 8
+_MOST_TOLD = 8
 """Kinds of things left out that a warning names; the account has all."""
 
 
@@ -163,7 +163,7 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     refuse_frame(kept)
     if drawing.left_out:
         lost = [f"{count} x {what}" for what, count in drawing.left_out.items()]
-        doubts.append(f"left out of the drawing: {first_few(lost, MOST_TOLD)}")
+        doubts.append(f"left out of the drawing: {first_few(lost, _MOST_TOLD)}")
     doubts += dict.fromkeys(drawing.notes)
     left_out = [f"left out {count} x {what}" for what, count in drawing.left_out.items()]
     if len(kept) < len(drawing.outlines):
@@ -180,7 +180,7 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
         "format": "wall/1",
         "title": chosen.title or path.stem,
         "units": {"length": unit, "force": "kN", "unit_weight": "kN/m3"},
-        "unit_weight": UNIT_WEIGHT if chosen.unit_weight is None else chosen.unit_weight,
+        "unit_weight": _UNIT_WEIGHT if chosen.unit_weight is None else chosen.unit_weight,
         "thickness": metre if chosen.thickness is None else chosen.thickness,
         "friction": _friction(chosen),
         "blocks": [
@@ -193,11 +193,11 @@ def _imported(path: Path, chosen: Mapping, drawing: Drawing) -> Imported:
     tolerance, tolerated = _tolerance(kept, chosen)
     if tolerance is not None and chosen.tolerance is None:
         doubts += tolerated
-    sight = {"sight": NEAR * _size(kept)}
+    sight = {"sight": _NEAR * _size(kept)}
     data["interfaces"] = sight if tolerance is None else sight | {"tolerance": tolerance}
     for name, value, said in (
-        ("friction", f"{FRICTION}", chosen.friction),
-        ("unit weight", f"{UNIT_WEIGHT:g} kN/m3", chosen.unit_weight),
+        ("friction", f"{_FRICTION}", chosen.friction),
+        ("unit weight", f"{_UNIT_WEIGHT:g} kN/m3", chosen.unit_weight),
         ("thickness", "one metre", chosen.thickness),
         ("live load", f"{_in_words(live)},", chosen.live),
     ):
@@ -273,7 +273,7 @@ def _known_layers(mapping: Mapping, drawing: Drawing, path: Path) -> None:
 
 
 def _friction(mapping: Mapping) -> Any:
-    value = FRICTION if mapping.friction is None else mapping.friction
+    value = _FRICTION if mapping.friction is None else mapping.friction
     if not mapping.rules:
         return value
     return {"default": value, "rules": [rule.model_dump(exclude_none=True) for rule in mapping.rules]}
@@ -331,7 +331,7 @@ def _tolerance(outlines: list[Outline], mapping: Mapping) -> tuple[float | None,
     for exponent in range(math.floor(math.log10(_FINE * size)), math.ceil(math.log10(1e-6 * size)), -1):
         step = 10.0**exponent
         on_grid = abs(points - np.round(points / step) * step) <= 1e-9 * step + 1e-15 * abs(points).max()
-        if on_grid.mean() >= MOST:
+        if on_grid.mean() >= _MOST:
             warned = f"joints: faces up to {1.5 * step:g} apart, because the coordinates are rounded to {step:g}"
             return 1.5 * step, [warned]
     return None, []

@@ -19,14 +19,14 @@ from harness.model.load_steps import STATES, UNKNOWN, LoadSteps
 from harness.model.result import Result, vertex_velocities
 from harness.model.writing import replacing, write_whole
 
-SHOWN = 0.3
+_SHOWN = 0.3
 """The fastest vertex of a drawn mechanism is moved by this part of the typical size of a block."""
-STEPS = 20
+_STEPS = 20
 """Files of a series that moves the mechanism from nothing to what is drawn."""
 
 
 @dataclass(frozen=True, eq=False)
-class VtkStep:
+class _VtkStep:
     """One file of a series.
 
     Attributes:
@@ -42,7 +42,7 @@ class VtkStep:
     states: IntArray
 
 
-def velocities(assembly: Assembly, result: Result | None) -> list[FloatArray]:
+def _velocities(assembly: Assembly, result: Result | None) -> list[FloatArray]:
     """Velocities (k, 2) of the vertices of every block, zero without a mechanism."""
     if result is None or result.mechanism is None:
         return [np.zeros_like(polygon) for polygon in assembly.polygons]
@@ -59,14 +59,14 @@ def _by_blocks(assembly: Assembly, motions: FloatArray) -> list[FloatArray]:
 
 def moved(assembly: Assembly, result: Result | None, part: float = 1.0) -> list[FloatArray]:
     """Polygons of the blocks displaced along the mechanism, as far as it is drawn."""
-    scale = part * SHOWN * assembly.length_scale
-    return [p + scale * v for p, v in zip(assembly.polygons, velocities(assembly, result), strict=True)]
+    scale = part * _SHOWN * assembly.length_scale
+    return [p + scale * v for p, v in zip(assembly.polygons, _velocities(assembly, result), strict=True)]
 
 
 def write_vtu(built: Built, result: Result | None, path: Path) -> None:
     """Blocks as polygons and joints as lines, for ParaView: velocity, displacement, forces and states."""
     assembly = built.assembly
-    displacement = [SHOWN * assembly.length_scale * v for v in velocities(assembly, result)]
+    displacement = [_SHOWN * assembly.length_scale * v for v in _velocities(assembly, result)]
     _write(_mesh(built, result, _frame(assembly, result, 0.0, displacement)), path)
 
 
@@ -75,12 +75,12 @@ def _write(mesh: Any, path: Path) -> None:
         mesh.write(draft, file_format="vtu", binary=True)
 
 
-def _frame(assembly: Assembly, result: Result | None, time: float, displacement: list[FloatArray]) -> VtkStep:
+def _frame(assembly: Assembly, result: Result | None, time: float, displacement: list[FloatArray]) -> _VtkStep:
     """The frame of a wall with the forces and states of its answer."""
     m = assembly.n_interfaces
     given = None if result is None else result.forces
     known = None if result is None else result.states
-    return VtkStep(
+    return _VtkStep(
         time=time,
         multiplier=np.nan if result is None or result.forces_multiplier is None else result.forces_multiplier,
         displacement=displacement,
@@ -89,7 +89,7 @@ def _frame(assembly: Assembly, result: Result | None, time: float, displacement:
     )
 
 
-def _mesh(built: Built, result: Result | None, frame: VtkStep) -> Any:
+def _mesh(built: Built, result: Result | None, frame: _VtkStep) -> Any:
     """The mesh of a wall in a frame, with the mechanism of its answer."""
     import meshio
 
@@ -99,7 +99,7 @@ def _mesh(built: Built, result: Result | None, frame: VtkStep) -> Any:
     joints = np.concatenate([joints, np.stack([bars.end1, bars.end2], axis=1)])
     starts = np.cumsum([0, *(len(polygon) for polygon in polygons)])
     points = np.concatenate([*polygons, joints.reshape(-1, 2)])
-    velocity = np.concatenate([*velocities(assembly, result), np.zeros((2 * len(joints), 2))])
+    velocity = np.concatenate([*_velocities(assembly, result), np.zeros((2 * len(joints), 2))])
     order = sorted(range(len(polygons)), key=lambda i: (len(polygons[i]), i))
     cells: list[tuple[str, Any]] = []
     for size in sorted({len(polygon) for polygon in polygons}):
@@ -168,7 +168,7 @@ def write_pvd(built: Built, result: Result | None, path: Path) -> None:
     write_whole(path, text + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n")
 
 
-def _frames(assembly: Assembly, result: Result | None) -> Iterator[VtkStep]:
+def _frames(assembly: Assembly, result: Result | None) -> Iterator[_VtkStep]:
     """The frames of the series that an answer has most to show in."""
     followed = None if result is None else released(result, assembly.n_blocks)
     steps = None if result is None else LoadSteps.of(result.details, assembly)
@@ -182,8 +182,8 @@ def _frames(assembly: Assembly, result: Result | None) -> Iterator[VtkStep]:
     elif steps is not None:
         for k, multiplier in enumerate(steps.multiplier.tolist()):
             shift = _by_blocks(assembly, steps.displacements[k])
-            yield VtkStep(float(k), multiplier, shift, steps.forces[k], steps.states[k])
+            yield _VtkStep(float(k), multiplier, shift, steps.forces[k], steps.states[k])
     else:
-        drawn = [SHOWN * assembly.length_scale * v for v in velocities(assembly, result)]
-        for step in range(STEPS + 1):
-            yield _frame(assembly, result, step / STEPS, [step / STEPS * v for v in drawn])
+        drawn = [_SHOWN * assembly.length_scale * v for v in _velocities(assembly, result)]
+        for step in range(_STEPS + 1):
+            yield _frame(assembly, result, step / _STEPS, [step / _STEPS * v for v in drawn])

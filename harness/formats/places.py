@@ -13,10 +13,10 @@ from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.input_checks import SIZES
 
-REMEDY = "Project it (QGIS: Export, Save Features As, a CRS in metres such as your UTM zone), and import that"
-MOST_NAMED = 10_000
+_REMEDY = "Project it (QGIS: Export, Save Features As, a CRS in metres such as your UTM zone), and import that"
+_MOST_NAMED = 10_000
 """Letters of a system of coordinates that are read."""
-FAR = 100.0
+_FAR = 100.0
 """Coordinates in degrees lie so many extents of the wall from the origin at least: 100 km from it, for a wall of 1."""
 
 
@@ -28,12 +28,12 @@ def reference_system(name: str, drawing: Drawing) -> None:
     Raises:
         InputError: a geographic system.
     """
-    text = name.strip()[:MOST_NAMED]
+    text = name.strip()[:_MOST_NAMED]
     code = re.search(r"EPSG(?:/\d+(?:\.\d+)*|[:/]*[\d.]*:)?[:/]*(\d+)$", text, re.IGNORECASE)
     geographic = text.upper().startswith(("GEOGCS", "GEOGCRS", "GEODCRS")) or re.search(r"CRS(84|83|27)h?$", text)
     if geographic or (code is not None and 4000 <= int(code[1]) <= 4999):
         raise InputError(
-            f'its coordinates are degrees ("{text[:60]}")', f"{REMEDY}; or give lengths without a crs", "crs"
+            f'its coordinates are degrees ("{text[:60]}")', f"{_REMEDY}; or give lengths without a crs", "crs"
         )
     foot = re.search(r'UNIT\["[^"]*(foot|feet)|ftUS|\bft\b', text, re.IGNORECASE)
     drawing.unit = "ft" if foot else "m"
@@ -54,11 +54,11 @@ def refuse_degrees(outlines: Sequence[Outline]) -> None:
     points = np.concatenate([item.polygon for item in outlines])
     extent = float(np.ptp(points, axis=0).max())
     within = bool((np.abs(points) <= (180.0, 90.0)).all())
-    if within and extent < SIZES[0] and float(np.abs(points).max()) > FAR * extent:
+    if within and extent < SIZES[0] and float(np.abs(points).max()) > _FAR * extent:
         x, y = points[0]
         raise InputError(
             f"its coordinates look like degrees: all lie within {extent:.2g} of ({x:.6g}, {y:.6g})",
-            f"{REMEDY}; if they are lengths, say in which unit (--units)",
+            f"{_REMEDY}; if they are lengths, say in which unit (--units)",
         )
 
 

@@ -17,8 +17,8 @@ from harness.model.errors import InputError
 from harness.model.json_text import read_bytes, read_json, read_text
 from harness.model.writing import uncelled
 
-NAMES = ("id", "name", "block")
-LAYERS = ("layer", "group")
+_NAMES = ("id", "name", "block")
+_LAYERS = ("layer", "group")
 
 
 def read_geojson(path: Path, _asked: Asked) -> Drawing:
@@ -148,7 +148,7 @@ def read_csv(path: Path, _asked: Asked) -> Drawing:
         for number, row in enumerate(rows, start=1):
             _add(drawing, _from_wkt(row.get("wkt", ""), f"row {number}"), row)
         return drawing
-    name = next((item for item in NAMES if item in columns), "")
+    name = next((item for item in _NAMES if item in columns), "")
     if not name or not {"x", "y"} <= columns:
         raise InputError(
             f"its columns are {', '.join(sorted(columns)) or 'none'}",
@@ -194,8 +194,8 @@ def _said(properties: dict[str, Any]) -> dict[str, Any]:
     """What the properties of a polygon say of the stone."""
     said = {str(name).lower(): value for name, value in properties.items() if value not in (None, "")}
     return {
-        "name": str(next((said[item] for item in NAMES if item in said), "")),
-        "layer": str(next((said[item] for item in LAYERS if item in said), "")),
+        "name": str(next((said[item] for item in _NAMES if item in said), "")),
+        "layer": str(next((said[item] for item in _LAYERS if item in said), "")),
         "material": str(said.get("material", "")),
         "fixed": str(said.get("fixed", "")).lower() in ("1", "true", "yes"),
     }

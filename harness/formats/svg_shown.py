@@ -16,7 +16,7 @@ from harness.model.errors import InputError
 
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _HREFS = ("href", "{http://www.w3.org/1999/xlink}href")
-SHAPES = {"rect", "circle", "ellipse", "line", "polyline", "polygon", "path"}
+_SHAPES = {"rect", "circle", "ellipse", "line", "polyline", "polygon", "path"}
 _GROUPS = {"g", "a", "svg", "switch"}
 _WITHOUT_OUTLINE = {"text", "image", "foreignObject"}
 _INHERITED = {"visibility": "visible", "fill": "black", "stroke": "none", "fill-opacity": "1", "stroke-opacity": "1"}
@@ -30,8 +30,8 @@ _PIXELS = {"": 1.0, "px": 1.0, "mm": 96.0 / 25.4, "cm": 96.0 / 2.54, "in": 96.0,
 _LENGTH = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(px|mm|cm|in|pt|pc|)\s*")
 _COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
 
-Style = dict[str, str]
-Selector = list[tuple[str, list[str]]]
+_Style = dict[str, str]
+_Selector = list[tuple[str, list[str]]]
 
 
 def shown(root: Element, drawing: Drawing) -> Element:
@@ -72,31 +72,31 @@ class _Viewer:
 
     drawing: Drawing
     named: dict[str, Element]
-    styles: dict[Element, Style]
+    styles: dict[Element, _Style]
     window: tuple[float, float] | None
     copies: int = 0
     _cloning: list[Element] = field(default_factory=list)
 
-    def style(self, element: Element) -> Style:
+    def style(self, element: Element) -> _Style:
         """What is said of an element itself."""
         return self.styles.get(element, {})
 
-    def children(self, element: Element, state: Style, deep: tuple[Element, ...]) -> Iterator[Element]:
+    def children(self, element: Element, state: _Style, deep: tuple[Element, ...]) -> Iterator[Element]:
         """The shown children of an element, for the properties that are handed down to them."""
         inner = list(element)
         if _tag(element) == "switch":
-            inner = [child for child in inner if _tag(child) in _GROUPS | SHAPES | {"use"}][:1]
+            inner = [child for child in inner if _tag(child) in _GROUPS | _SHAPES | {"use"}][:1]
         for child in inner:
             made = self.one(child, state, (*deep, element))
             if made is not None:
                 yield made
 
-    def one(self, element: Element, state: Style, deep: tuple[Element, ...]) -> Element | None:
+    def one(self, element: Element, state: _Style, deep: tuple[Element, ...]) -> Element | None:
         """An element as it is shown, or nothing."""
         tag, own = _tag(element), self.style(element)
         if tag in _WITHOUT_OUTLINE:
             self.drawing.left_out[f"{tag}: no outline"] += 1
-        if tag not in _GROUPS | SHAPES | {"use"}:
+        if tag not in _GROUPS | _SHAPES | {"use"}:
             return None
         if len(deep) > _MOST_DEEP:
             raise InputError(f"its elements are nested more than {_MOST_DEEP} deep", "Ungroup them")
@@ -108,12 +108,12 @@ class _Viewer:
                 self.drawing.notes.append(f"a {name} is not evaluated: parts that it hides are read as shown")
         hidden = _hidden(tag, own, state)
         if hidden:
-            number = sum(_tag(item) in SHAPES | {"use"} for item in element.iter())
+            number = sum(_tag(item) in _SHAPES | {"use"} for item in element.iter())
             self.drawing.left_out[f"shape: hidden ({hidden})"] += number
             return None
         if tag == "use":
             return self._clone(element, state, deep)
-        if tag in SHAPES:
+        if tag in _SHAPES:
             kept = {
                 name: value for name, value in element.attrib.items() if name not in {"style", "class", *_PROPERTIES}
             }
@@ -126,7 +126,7 @@ class _Viewer:
         group.extend(list(self.children(element, state, deep)))
         return group
 
-    def _clone(self, use: Element, state: Style, deep: tuple[Element, ...]) -> Element | None:
+    def _clone(self, use: Element, state: _Style, deep: tuple[Element, ...]) -> Element | None:
         """The element that a `use` refers to, in its place."""
         link = next((use.get(name, "") for name in _HREFS if use.get(name)), "")
         target = self.named.get(link.removeprefix("#")) if link.startswith("#") else None
@@ -193,13 +193,13 @@ def _group(transform: str, like: Element | None = None) -> Element:
     return group
 
 
-def _hidden(tag: str, own: Style, state: Style) -> str:
+def _hidden(tag: str, own: _Style, state: _Style) -> str:
     """Why an element is not shown; empty where it is."""
     if own.get("display") == "none":
         return "display: none"
     if _nothing(own.get("opacity", "1")):
         return "opacity: 0"
-    if tag not in SHAPES:
+    if tag not in _SHAPES:
         return ""
     if state["visibility"] in ("hidden", "collapse"):
         return f"visibility: {state['visibility']}"
@@ -236,7 +236,7 @@ def _box(root: Element) -> tuple[float, float] | None:
     return None if width is None or height is None else (width, height)
 
 
-def _styles(above: dict[Element, Element | None], drawing: Drawing) -> dict[Element, Style]:
+def _styles(above: dict[Element, Element | None], drawing: Drawing) -> dict[Element, _Style]:
     """What is said of every element itself: by attributes, style sheets and its `style`, the later first."""
     rules = _rules("\n".join(element.text or "" for element in above if _tag(element) == "style"), drawing)
     if len(rules) * len(above) > _MOST_MATCHES:
@@ -253,9 +253,9 @@ def _styles(above: dict[Element, Element | None], drawing: Drawing) -> dict[Elem
     return styles
 
 
-def _rules(text: str, drawing: Drawing) -> list[tuple[Selector, Style]]:
+def _rules(text: str, drawing: Drawing) -> list[tuple[_Selector, _Style]]:
     """Rules of a style sheet that concern what is shown, the weakest first."""
-    found: list[tuple[tuple[int, int, int], Selector, Style]] = []
+    found: list[tuple[tuple[int, int, int], _Selector, _Style]] = []
     rules, conditions = _blocks(without_comments(text))
     for condition in conditions:
         drawing.notes.append(f'the style of "{condition[:40]}" is ignored: it may hide or show shapes')
@@ -293,14 +293,14 @@ def _blocks(text: str) -> tuple[list[tuple[str, str]], list[str]]:
     return rules, conditions
 
 
-def _declared(text: str) -> Style:
+def _declared(text: str) -> _Style:
     """The properties that a style declares, of those that concern what is shown."""
     pairs = (item.partition(":") for item in text.split(";"))
     said = {name.strip().lower(): value.replace("!important", "").strip() for name, _, value in pairs}
     return {name: value for name, value in said.items() if name in _PROPERTIES and value}
 
 
-def _matches(selector: Selector, element: Element, above: dict[Element, Element | None]) -> bool:
+def _matches(selector: _Selector, element: Element, above: dict[Element, Element | None]) -> bool:
     """Whether a selector of descendants is met by an element: its last part there, the others on the way up."""
     *before, last = selector
     if not _is(last, element):

@@ -23,11 +23,11 @@ DEEPEST = 33
 """Depth to which details may be nested. One that holds a result may have `json_text.MOST_NESTED` levels in all."""
 _FLOWS = ("non-associated", "associated", "approximate")
 """Flow rules that an answer may name."""
-NUMBERS = "iuf"
+_NUMBERS = "iuf"
 """Kinds of NumPy's types that are real numbers."""
 
-Member = TypeVar("Member", bound=StrEnum)
-Triple = tuple[float, float, float]
+_Member = TypeVar("_Member", bound=StrEnum)
+_Triple = tuple[float, float, float]
 
 
 class AnswerFault(InputError):
@@ -39,7 +39,7 @@ class AnswerFault(InputError):
 
 class _Displaced(BaseModel, defer_build=True):
     model_config = ConfigDict(extra="forbid")
-    places: list[Triple]
+    places: list[_Triple]
     interface: list[int]
     onto: list[int]
     point: list[tuple[float, float]]
@@ -51,14 +51,14 @@ class _Steps(BaseModel, defer_build=True):
     model_config = ConfigDict(extra="forbid")
     blocks: list[str]
     multiplier: list[float]
-    displacements: list[list[Triple]]
-    forces: list[list[Triple]]
+    displacements: list[list[_Triple]]
+    forces: list[list[_Triple]]
     states: list[list[int]]
 
 
 class _Release(BaseModel, defer_build=True):
     time_unit: str = ""
-    frames: list[list[Triple]] | None = None
+    frames: list[list[_Triple]] | None = None
 
 
 class _Order(BaseModel, defer_build=True):
@@ -76,9 +76,9 @@ class _Residual(BaseModel, defer_build=True):
     multiplier: float | None = None
     bracket: tuple[float, float] | None = None
     bracket_meaning: str = ""
-    forces: list[Triple] | None = None
+    forces: list[_Triple] | None = None
     forces_multiplier: float | None = None
-    mechanism: list[Triple] | None = None
+    mechanism: list[_Triple] | None = None
     flow: str = _FLOWS[0]
     details: dict[str, Any] = Field(default_factory=dict)
 
@@ -96,8 +96,8 @@ class _KnownDetails(BaseModel, defer_build=True):
     histories: list[dict[str, Any]] | None = None
     improvements: list[dict[str, Any]] | None = None
     orders: list[_Order] | None = None
-    live_forces: list[Triple] | None = None
-    dilatant_mechanism: list[Triple] | None = None
+    live_forces: list[_Triple] | None = None
+    dilatant_mechanism: list[_Triple] | None = None
     displaced_state: _Displaced | None = None
     load_steps: _Steps | None = None
     release: _Release | None = None
@@ -166,7 +166,7 @@ def _text(value: Any, what: str) -> str:
     return encodable(str(value), what)
 
 
-def _member(kind: type[Member], value: Any, what: str) -> Member:
+def _member(kind: type[_Member], value: Any, what: str) -> _Member:
     try:
         return kind(value)
     except ValueError:
@@ -184,7 +184,7 @@ def _array(value: Any, shape: tuple[int, ...], what: str) -> Any:
         raise AnswerFault(f"The method answers with {what} that cannot be read ({type(error).__name__}).") from None
     if array.shape != shape and not (array.size == 0 and math.prod(shape) == 0):
         raise AnswerFault(f"The method answers with {what} of shape {array.shape} instead of {shape}.")
-    if array.size and array.dtype.kind not in NUMBERS:
+    if array.size and array.dtype.kind not in _NUMBERS:
         raise AnswerFault(f"The method answers with {what} of type {array.dtype}, not of real numbers.")
     with np.errstate(over="ignore"):  # of numbers that only an extended type can hold: they are not finite here
         array = array.astype(float).reshape(shape)

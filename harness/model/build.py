@@ -31,7 +31,7 @@ from harness.model.wall import Block, Inset, Interface, Wall
 
 _MOST_MOVED = 1_000_000
 """Pairs of a settlement and a support that it moves, a second of work."""
-SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
+_SMALLEST = float(np.finfo(float).tiny / np.finfo(float).eps)
 """Least sum of loads, whatever its unit: a share of it as small as rounding still has all its digits."""
 
 
@@ -169,7 +169,7 @@ def _check_sizes(assembly: Assembly) -> None:
     """
 
     def check(element: str, what: str, size: float) -> None:
-        if not SMALLEST <= size <= 1.0 / SMALLEST:
+        if not _SMALLEST <= size <= 1.0 / _SMALLEST:
             wrong = "small" if size < 1.0 else "large"
             raise InputError(f"{what} too {wrong} to compute with", "Check the units", element)
 

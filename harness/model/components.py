@@ -21,12 +21,12 @@ from harness.model.errors import as_sentence, first_few
 from harness.model.groups import groups_of
 from harness.model.method import Answer, Finding, Status
 
-NAMED = 8
+_NAMED = 8
 """Blocks of a component that are named at most."""
 
-Solve = Callable[[Assembly], Answer]
+_Solve = Callable[[Assembly], Answer]
 """The answer of a method for one component."""
-Bear = Callable[[Assembly, Answer, float], "FloatArray | None"]
+_Bear = Callable[[Assembly, Answer, float], "FloatArray | None"]
 """Contact forces (m, 3) of a component within yield at a multiplier of the live load, or None if none are found.
 
 Its arguments: the component; the method's answer for it; the multiplier, which is no higher than the answer's own.
@@ -52,7 +52,7 @@ class Component:
     @property
     def named(self) -> str:
         """A few of its free blocks in words."""
-        return first_few([self.assembly.block_ids[i] for i in self.assembly.free], NAMED)
+        return first_few([self.assembly.block_ids[i] for i in self.assembly.free], _NAMED)
 
 
 def components_of(assembly: Assembly) -> list[Component]:
@@ -104,7 +104,7 @@ def joints_of(part: Assembly, whole: Assembly) -> IntArray:
     return np.flatnonzero(own[whole.block_a] | own[whole.block_b])
 
 
-def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
+def analysed_apart(assembly: Assembly, solve: _Solve, bear: _Bear) -> Answer:
     """The answer for a wall from those for its components, each analysed alone.
 
     The smallest come first, so that a run that is stopped knows as much as it can. After one that was stopped by the
@@ -143,7 +143,7 @@ def _not_reached(part: Component) -> Answer:
     return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
 
 
-def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], bear: Bear) -> Answer:
+def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], bear: _Bear) -> Answer:
     """The answer for the whole wall: falls if a component does, else the least multiplier, else unbounded or stands.
 
     Args:
@@ -193,7 +193,7 @@ def _upper_end(answer: Answer) -> float:
 
 
 def _with_forces(
-    assembly: Assembly, parts: list[Component], answers: list[Answer], deciding: int, answer: Answer, bear: Bear
+    assembly: Assembly, parts: list[Component], answers: list[Answer], deciding: int, answer: Answer, bear: _Bear
 ) -> Answer:
     """The answer with contact forces of every component at the multiplier of the deciding one's forces.
 

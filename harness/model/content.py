@@ -15,7 +15,7 @@ from harness.model.wall import Wall
 
 _REMARKS = ("$schema", "comment", "title", "metadata", "doubts")
 """Fields of a wall that decide no answer."""
-STEP = 1.37e-6
+_STEP = 1.37e-6
 """Values are rounded to this part of their size. No round number of a drawing lies on the edge between two steps."""
 
 
@@ -60,7 +60,7 @@ def content_of(assembly: Assembly) -> str:
         (loads, load),
         *besides,
     ):
-        digest.update(np.rint(values / (STEP * size)).astype("<i8").tobytes() + b";")
+        digest.update(np.rint(values / (_STEP * size)).astype("<i8").tobytes() + b";")
     return digest.hexdigest()
 
 

@@ -11,7 +11,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.details import AnswerDetails
 from harness.model.result import Result
 
-NAME = "displaced_state"
+_NAME = "displaced_state"
 """Name under which an answer's details hold it."""
 
 
@@ -37,12 +37,12 @@ class DisplacedState:
 
     def as_details(self) -> dict[str, Any]:
         """JSON values for an answer's details."""
-        return {NAME: {name: value.tolist() for name, value in vars(self).items()}}
+        return {_NAME: {name: value.tolist() for name, value in vars(self).items()}}
 
     @classmethod
     def of(cls, details: dict[str, Any]) -> DisplacedState | None:
         """The state that details hold, None where they hold none."""
-        data = details.get(NAME)
+        data = details.get(_NAME)
         if data is None:
             return None
         whole = ("interface", "onto")

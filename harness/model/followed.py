@@ -23,20 +23,20 @@ from harness.model.method import Answer, Finding, Status
 
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
-Number = Annotated[float, Field(strict=True, ge=-COUNTABLE, le=COUNTABLE)]
+_Number = Annotated[float, Field(strict=True, ge=-COUNTABLE, le=COUNTABLE)]
 
 
-def floats(axes: str) -> PlainValidator:
+def _floats(axes: str) -> PlainValidator:
     """Reads numbers, in an array that has these axes, as `InDetails` names them."""
     return _array(axes, "iuf", float)
 
 
-def integers(axes: str) -> PlainValidator:
+def _integers(axes: str) -> PlainValidator:
     """Reads whole numbers, likewise."""
     return _array(axes, "iu", int)
 
 
-def truths(axes: str) -> PlainValidator:
+def _truths(axes: str) -> PlainValidator:
     """Reads truths, likewise."""
     return _array(axes, "b", bool)
 
@@ -120,10 +120,10 @@ class DrivenWall(InDetails):
     """
 
     NAME = "driven"
-    reaction: Number
-    forces: Annotated[FloatArray, floats("m3")]
-    tensions: Annotated[FloatArray, floats("b")]
-    mechanism: Annotated[FloatArray, floats("n3")]
+    reaction: _Number
+    forces: Annotated[FloatArray, _floats("m3")]
+    tensions: Annotated[FloatArray, _floats("b")]
+    mechanism: Annotated[FloatArray, _floats("n3")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,15 +145,15 @@ class FollowedWall(InDetails):
 
     NAME = "followed"
     END = ("falls", "fallen", "falling")
-    displacement: Annotated[FloatArray, floats("k")]
-    value: Annotated[FloatArray, floats("k")]
-    places: Annotated[FloatArray, floats("kn3")]
-    forces: Annotated[FloatArray, floats("km3")]
-    mechanisms: Annotated[FloatArray, floats("kn3")]
-    closed: Annotated[BoolArray, truths("m2")]
-    falls: Number | None
-    fallen: Annotated[FloatArray, floats("n3")] | None
-    falling: Annotated[FloatArray, floats("n3")] | None
+    displacement: Annotated[FloatArray, _floats("k")]
+    value: Annotated[FloatArray, _floats("k")]
+    places: Annotated[FloatArray, _floats("kn3")]
+    forces: Annotated[FloatArray, _floats("km3")]
+    mechanisms: Annotated[FloatArray, _floats("kn3")]
+    closed: Annotated[BoolArray, _truths("m2")]
+    falls: _Number | None
+    fallen: Annotated[FloatArray, _floats("n3")] | None
+    falling: Annotated[FloatArray, _floats("n3")] | None
     reason: StrictStr
 
 
@@ -173,13 +173,13 @@ class SupportPath(InDetails):
 
     NAME = "support_path"
     END = ("mechanism", "constant_from")
-    displacement: Annotated[FloatArray, floats("k")]
-    reaction: Annotated[FloatArray, floats("k")]
-    slipping: Annotated[IntArray, integers("k")]
-    opened: Annotated[IntArray, integers("k")]
-    forces: Annotated[FloatArray, floats("m3")]
-    mechanism: Annotated[FloatArray, floats("n3")] | None
-    constant_from: Number | None
+    displacement: Annotated[FloatArray, _floats("k")]
+    reaction: Annotated[FloatArray, _floats("k")]
+    slipping: Annotated[IntArray, _integers("k")]
+    opened: Annotated[IntArray, _integers("k")]
+    forces: Annotated[FloatArray, _floats("m3")]
+    mechanism: Annotated[FloatArray, _floats("n3")] | None
+    constant_from: _Number | None
     reason: StrictStr
 
 
@@ -212,13 +212,13 @@ class ShakenWall(InDetails):
     """
 
     NAME = "shaken"
-    time: Annotated[FloatArray, floats("k")]
-    places: Annotated[FloatArray, floats("kn3")]
-    energy: Number | None
-    fallen: Annotated[BoolArray, truths("n")]
+    time: Annotated[FloatArray, _floats("k")]
+    places: Annotated[FloatArray, _floats("kn3")]
+    energy: _Number | None
+    fallen: Annotated[BoolArray, _truths("n")]
     at_rest: StrictBool
     engine: StrictStr
-    impact: Number
+    impact: _Number
 
 
 def check_followed(details: dict[str, Any], assembly: Assembly) -> None:

@@ -13,16 +13,16 @@ from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
 from harness.model.json_text import MOST_SHOWN, read_text
 
-MOST_PIECES = 200_000
+_MOST_PIECES = 200_000
 """Pieces of a motion: a record of 1000 s at 200 samples a second."""
-LONGEST_MOTION = 1000.0
+_LONGEST_MOTION = 1000.0
 """Duration of a motion [s]."""
 STRONGEST = 1000.0
 """Acceleration of the ground [g], beyond which a unit is mistaken."""
 GRAVITY = 9.81
 """Acceleration of gravity where none is given [m/s2]."""
-PULSES = "Give them as ACCELERATION:SECONDS, in g and one after the other, as 0.5:0.3,-0.25:0.6"
-HEADS = 'Give a first line as "time [s],acceleration [g]" or "time [s],acceleration [m/s2]"'
+_PULSES = "Give them as ACCELERATION:SECONDS, in g and one after the other, as 0.5:0.3,-0.25:0.6"
+_HEADS = 'Give a first line as "time [s],acceleration [g]" or "time [s],acceleration [m/s2]"'
 _TIME = re.compile(r"\s*(?:t|time)\s*[\[(]\s*s\s*[\])]\s*", re.IGNORECASE)
 _ACCELERATION = re.compile(r"\s*(?:a|acc|acceleration)\s*[\[(]\s*(g|m/s2|m/s\^2|m/s²)\s*[\])]\s*", re.IGNORECASE)
 
@@ -74,9 +74,9 @@ def pulses_of(text: str) -> GroundMotion:
     """
     accelerations, seconds = [], []
     parts = text.split(",")
-    if len(parts) > MOST_PIECES:
+    if len(parts) > _MOST_PIECES:
         raise InputError(
-            f"there are {len(parts):,} pulses, and at most {MOST_PIECES:,} are taken", "Give fewer", "pulse"
+            f"there are {len(parts):,} pulses, and at most {_MOST_PIECES:,} are taken", "Give fewer", "pulse"
         )
     for number, part in enumerate(parts, 1):
         try:
@@ -84,7 +84,7 @@ def pulses_of(text: str) -> GroundMotion:
         except ValueError:
             acceleration = length = np.nan
         if not (np.isfinite(acceleration) and np.isfinite(length) and length > 0.0):
-            raise InputError(f'"{part[:MOST_SHOWN]}" is no pulse', PULSES, f"pulse {number}")
+            raise InputError(f'"{part[:MOST_SHOWN]}" is no pulse', _PULSES, f"pulse {number}")
         accelerations.append(acceleration)
         seconds.append(length)
     level = np.array(accelerations)
@@ -113,9 +113,9 @@ def _record(rows: list[list[str]], gravity: float) -> GroundMotion:
     head = rows[0] if rows else []
     unit = _ACCELERATION.fullmatch(head[1]) if len(head) == 2 and _TIME.fullmatch(head[0]) else None
     if unit is None:
-        raise InputError("its first line does not name a time in s and an acceleration with its unit", HEADS, "line 1")
-    if len(rows) - 2 > MOST_PIECES:
-        raise InputError(f"it has {len(rows) - 1:,} samples, and at most {MOST_PIECES + 1:,} are taken", "Give fewer")
+        raise InputError("its first line does not name a time in s and an acceleration with its unit", _HEADS, "line 1")
+    if len(rows) - 2 > _MOST_PIECES:
+        raise InputError(f"it has {len(rows) - 1:,} samples, and at most {_MOST_PIECES + 1:,} are taken", "Give fewer")
     values = np.zeros((len(rows) - 1, 2))
     for line, row in enumerate(rows[1:], 2):
         try:
@@ -141,8 +141,8 @@ def _record(rows: list[list[str]], gravity: float) -> GroundMotion:
 
 def _checked(motion: GroundMotion, element: str, doubt: str) -> GroundMotion:
     """The motion, if its duration and accelerations are within bounds and it moves at all; raises InputError."""
-    if not motion.duration <= LONGEST_MOTION:
-        problem = f"it takes {motion.duration:g} s, and at most {LONGEST_MOTION:g} s are followed"
+    if not motion.duration <= _LONGEST_MOTION:
+        problem = f"it takes {motion.duration:g} s, and at most {_LONGEST_MOTION:g} s are followed"
         raise InputError(problem, "Give a part of it", element)
     if not motion.peak <= STRONGEST:
         problem = f"it reaches {motion.peak:g} g, and at most {STRONGEST:g} g are taken{doubt}"

@@ -16,7 +16,7 @@ from harness.model.pressure_fields import Earth, Fill, Passive, Water
 from harness.model.units import KILONEWTONS, METRES, unit_weight_in_kn_m3
 from harness.model.wall import Block, Wall
 
-LONGEST = 200
+_LONGEST = 200
 """Letters of a name that a sentence repeats."""
 _GREATEST_FRICTION = 2.0
 """Coefficient beyond which an angle in degrees is likelier: stone on stone has .4 to .8, 2 is a face of 63 degrees."""
@@ -124,7 +124,7 @@ def unknown_in_rules(wall: Wall, blocks: Sequence[Block]) -> list[str]:
     for number, (kind, name) in islice(unknown.items(), MOST_NAMED):
         hint = hints[kind].of(name) or f"There are: {hints[kind].there(8)}"
         what = "no block is of the material" if kind == "material" else "no joint has the name"
-        sentences.append(f'friction.rules[{number}]: {what} "{name[:LONGEST]}", so the rule does nothing. {hint}')
+        sentences.append(f'friction.rules[{number}]: {what} "{name[:_LONGEST]}", so the rule does nothing. {hint}')
     more = len(unknown) - len(sentences)
     return sentences + [f"friction.rules: {more:,} more do nothing for the same reason"] * (more > 0)
 

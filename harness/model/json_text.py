@@ -18,7 +18,7 @@ LARGEST_FILE = 256 * 2**20
 """Bytes that are read from one file at most: 100,000 blocks with their interfaces written out are about 150 MB."""
 
 
-MOST_VALUES = 4_000_000
+_MOST_VALUES = 4_000_000
 """Numbers, texts, lists and objects of a JSON document: 100,000 blocks with interfaces written out have as many. Each
 takes some 200 bytes when it is read, so the document takes less than 1 GB."""
 
@@ -31,7 +31,7 @@ _HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
 """An escape that is one half of a surrogate pair."""
 
 
-KINDS = {
+_KINDS = {
     b"\x89PNG": "a PNG picture",
     b"\xff\xd8\xff": "a JPEG picture",
     b"GIF8": "a GIF picture",
@@ -134,7 +134,7 @@ def text_of(content: bytes, source: str, otherwise: str = "") -> str:
     Raises:
         InputError: it is no text; what it is where its first bytes say so.
     """
-    kind = next((kind for begin, kind in KINDS.items() if content.startswith(begin)), "")
+    kind = next((kind for begin, kind in _KINDS.items() if content.startswith(begin)), "")
     if kind:
         raise InputError(f"it is {kind}", "Give a UTF-8 text file", source=source)
     try:
@@ -159,7 +159,7 @@ def read_json(path: Path, limit: int = LARGEST_FILE) -> Any:
     return json_of(read_text(path, limit), str(path))
 
 
-def json_of(text: str, source: str, most_values: int = MOST_VALUES) -> Any:
+def json_of(text: str, source: str, most_values: int = _MOST_VALUES) -> Any:
     """The value of JSON text.
 
     Args:
@@ -194,7 +194,7 @@ def json_of(text: str, source: str, most_values: int = MOST_VALUES) -> Any:
     try:
         data = json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
-        raise broken(text, error, source) from None
+        raise _broken(text, error, source) from None
     except ValueError:
         raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
@@ -235,7 +235,7 @@ MOST_SHOWN = 60
 """Characters of a wrong value that are shown."""
 
 
-def broken(text: str, error: json.JSONDecodeError, source: str) -> InputError:
+def _broken(text: str, error: json.JSONDecodeError, source: str) -> InputError:
     """What stands where JSON text is broken, and what should."""
     if not text.strip():
         return InputError("it is empty", "Give a JSON document", source=source)

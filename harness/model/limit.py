@@ -19,7 +19,7 @@ WRITTEN = 1e-8
 than drawings and measurements keep; it is ten times what linear programmes round off, so that what one of them decides
 by rounding is within it."""
 
-ROUNDED = 16.0
+_ROUNDED = 16.0
 """Units in the last place by which coordinates computed in double precision are off. In a national grid they are the
 larger part."""
 
@@ -28,7 +28,7 @@ def accuracy(assembly: Assembly) -> float:
     """Accuracy of the coordinates of a wall as a share of the size of a block, and of its friction."""
     points, _ = assembly.corners
     last_place = float(np.finfo(float).eps * abs(points).max(initial=0.0))
-    return WRITTEN + ROUNDED * last_place / assembly.length_scale
+    return WRITTEN + _ROUNDED * last_place / assembly.length_scale
 
 
 def gross_power(assembly: Assembly, mechanism: FloatArray) -> float:

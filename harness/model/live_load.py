@@ -14,7 +14,7 @@ from harness.model.fields import LARGEST
 from harness.model.load_fields import BodyForce, Load
 from harness.model.loads import times
 
-LEVEL = 1e-9
+_LEVEL = 1e-9
 """Part of the greatest live force below which a component is rounding."""
 
 
@@ -24,7 +24,7 @@ def _right_and_up(case: Case) -> FloatArray:
     up = -gravity / np.hypot(*gravity) if gravity.any() else np.array([0.0, 1.0])
     forces = case.assembly.live[case.assembly.free, :2]
     found = np.column_stack([forces @ [up[1], -up[0]], forces @ up])
-    found[abs(found) <= LEVEL * abs(found).max(initial=0.0)] = 0.0
+    found[abs(found) <= _LEVEL * abs(found).max(initial=0.0)] = 0.0
     return np.asarray(found[found.any(axis=1)])
 
 

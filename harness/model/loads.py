@@ -21,7 +21,7 @@ from harness.model.pressure import outlines_of, pressure_forces
 from harness.model.pressure_fields import Fill, Pressure
 from harness.model.wall import Block, Wall
 
-MOST_PAIRS = 20_000_000
+_MOST_PAIRS = 20_000_000
 """Pairs of a load and a block, or a face, that it may act on."""
 
 
@@ -82,8 +82,8 @@ def check_pairs(load: Load, blocks: Sequence[Block]) -> None:
             "Give longer segments",
         ),
     ):
-        if count > MOST_PAIRS:
-            raise InputError(f"{what}, and at most {MOST_PAIRS:,} are summed up", remedy, "loads")
+        if count > _MOST_PAIRS:
+            raise InputError(f"{what}, and at most {_MOST_PAIRS:,} are summed up", remedy, "loads")
 
 
 def has_pressures(loads: Loads) -> bool:

@@ -25,12 +25,12 @@ from harness.model.pressure_fields import Fill, Passive
 
 FILL = "fill"
 """The kind of such bars."""
-UPRIGHT = 0.01
+_UPRIGHT = 0.01
 """Slope from the vertical within which a face is upright, as surveys are rounded; beyond it an overhang is none."""
-NOTHING = 1e-9
+_NOTHING = 1e-9
 """Slope from the level within which a face is level, and share of the largest force that is none: rounding."""
 
-Strip = tuple[int, int, FloatArray]
+_Strip = tuple[int, int, FloatArray]
 """Part of a face: its edge, 1 where the fill is on its right and -1 on its left, and its two ends (2, 2) [length]."""
 
 
@@ -105,7 +105,7 @@ def _sums(fill: Fill, chosen: BoolArray, laid: Laid, thickness: Sequence[float])
             sums[block, side] += _pressed(fill.level, ends) * thickness[block]
             for part in _covered(ends, joints[edge]):
                 sums[block, side] -= _pressed(fill.level, part) * thickness[block]
-    least = NOTHING * max((found[0] for found in sums.values()), default=0.0)
+    least = _NOTHING * max((found[0] for found in sums.values()), default=0.0)
     return {key: sums[key] for key in sorted(sums) if sums[key][0] > least}
 
 
@@ -122,18 +122,18 @@ def _pressed(level: float, ends: FloatArray) -> FloatArray:
     return np.array([force, force * at[0], force * at[1], bottom - top])
 
 
-def _below_the_sky(outlines: Outlines, x: FloatArray, face: IntArray) -> Iterator[Strip]:
+def _below_the_sky(outlines: Outlines, x: FloatArray, face: IntArray) -> Iterator[_Strip]:
     """Parts of the inclined faces that the sky sees; `x`, `face` as of `highest_faces`."""
     for left, right, edge in zip(x[:-1], x[1:], face.tolist(), strict=True):
         if edge == NO_FACE or _is_upright(outlines, edge):
             continue
         places = np.array([left, right])
         y = heights(outlines, edge, places)
-        if abs(y[1] - y[0]) > NOTHING * (right - left):
+        if abs(y[1] - y[0]) > _NOTHING * (right - left):
             yield edge, 1 if y[0] > y[1] else -1, np.column_stack([places, y])
 
 
-def _upright(fill: Fill, outlines: Outlines, x: FloatArray, face: IntArray) -> Iterator[Strip]:
+def _upright(fill: Fill, outlines: Outlines, x: FloatArray, face: IntArray) -> Iterator[_Strip]:
     """Parts of the upright faces above the highest face just beside them; `x`, `face` as of `highest_faces`."""
     for edge in range(len(outlines.block)):
         if not _is_upright(outlines, edge):
@@ -180,4 +180,4 @@ def _covered(ends: FloatArray, joints: list[tuple[float, float]]) -> Iterator[Fl
 
 def _is_upright(outlines: Outlines, edge: int) -> bool:
     across, along = outlines.last[edge] - outlines.first[edge]
-    return bool(abs(across) < UPRIGHT * abs(along))
+    return bool(abs(across) < _UPRIGHT * abs(along))

@@ -15,7 +15,7 @@ _BESIDE = 0.05
 """Distance from its block, in typical block sizes, beyond which a point force or an interface is worth a warning."""
 _ASTRAY = 0.5
 """Distance from its blocks, in typical block sizes, beyond which a given interface is refused."""
-SHORT = 1e-3
+_SHORT = 1e-3
 """Length of an interface, in typical block sizes, below which it is worth a warning."""
 
 NEAR_MISS = "face each other"
@@ -29,7 +29,7 @@ def contact_warnings(assembly: Assembly, corners: IntArray, size: float) -> list
     if len(corners):
         shown = first_few([f"{assembly.block_ids[a]}/{assembly.block_ids[b]}" for a, b in corners], 5)
         sentences.append(f"{len(corners)} pair(s) of blocks touch only at a corner, which gives no support: {shown}")
-    short = np.flatnonzero(assembly.length < SHORT * size)
+    short = np.flatnonzero(assembly.length < _SHORT * size)
     if len(short):
         p = short[int(np.argmin(assembly.length[short]))]
         sentences.append(

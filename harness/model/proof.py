@@ -24,7 +24,7 @@ from fractions import Fraction
 _CERTIFIED = 3e-6
 """Relative height above a certified bound up to which a state is called the minimum: certificates leave 2e-6, and the
 rest is for rounding of the state."""
-EQUAL = 1e-9
+_EQUAL = 1e-9
 """Relative difference of multipliers of one state that two methods found."""
 
 
@@ -123,7 +123,7 @@ def least_known(item: CaseResults) -> Result | None:
     """
     states = [result for result in item.results if is_collapse_state(result)]
     best = min((result.multiplier or 0.0 for result in states), default=0.0)
-    near = [r for r in states if (r.multiplier or 0.0) <= best + EQUAL * max(abs(best), 1e-300)]
+    near = [r for r in states if (r.multiplier or 0.0) <= best + _EQUAL * max(abs(best), 1e-300)]
 
     def rank(result: Result) -> tuple[bool, bool, str]:
         return not AnswerDetails(result.details).proved_least, not result.traits.seeks_least, result.method
@@ -151,7 +151,7 @@ def proof_of(item: CaseResults, result: Result) -> Proof:
     lower, by = max(floating, key=lambda pair: pair[0], default=(0.0, ""))
     if bound is not None and value - bound <= _CERTIFIED * abs(value):
         return Proof(Standing.MINIMUM, bound, refused=refused)
-    if AnswerDetails(result.details).proved_least and value <= least + EQUAL * abs(least):
+    if AnswerDetails(result.details).proved_least and value <= least + _EQUAL * abs(least):
         return Proof(Standing.TO_ROUNDING, bound, by=result.method, refused=refused)
     if result is not least_known(item):
         return Proof(refused=refused)

@@ -18,9 +18,9 @@ from harness.model.names import faults_of_data
 from harness.model.scope import SCOPE, outside_the_model
 from harness.model.wall import Wall
 
-ModelType = TypeVar("ModelType", bound=BaseModel)
+_ModelType = TypeVar("_ModelType", bound=BaseModel)
 
-PLAIN = {
+_PLAIN = {
     "missing": "it is missing",
     "tuple_type": "it should be a list, in square brackets",
     "list_type": "it should be a list, in square brackets",
@@ -40,8 +40,8 @@ PLAIN = {
 
 
 def validate(
-    model: type[ModelType], data: Any, source: str, more: Callable[[Any], list[InputError]] = lambda data: []
-) -> ModelType:
+    model: type[_ModelType], data: Any, source: str, more: Callable[[Any], list[InputError]] = lambda data: []
+) -> _ModelType:
     """Data as a model.
 
     Args:
@@ -87,11 +87,11 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
     place = _place(fault["loc"], data)
     message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "it should")
     remedy = ""
-    if fault["type"] in PLAIN:
+    if fault["type"] in _PLAIN:
         context = dict(fault.get("ctx", {}))
         if context.get("actual_length", 0) is None:  # pydantic does not count the entries of an object
             context["actual_length"] = len(fault["input"])
-        message = PLAIN[fault["type"]].format(**context)
+        message = _PLAIN[fault["type"]].format(**context)
     if fault["type"] == "extra_forbidden":
         return _unknown_field(model, fault["loc"], place, source)
     if "input" in fault and not isinstance(fault["input"], dict | list):

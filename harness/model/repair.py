@@ -19,12 +19,12 @@ from harness.model.groups import groups_of
 from harness.model.rings import rings_of
 from harness.model.wall import Block, Wall
 
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """Share of the snapping distance below which a vertex has not moved: means of equal numbers differ in last digits."""
 
 
 @dataclass(frozen=True)
-class Move:
+class _Move:
     """A vertex that moved.
 
     Attributes:
@@ -43,7 +43,7 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Repaired:
+class _Repaired:
     """A mended wall.
 
     Attributes:
@@ -52,12 +52,12 @@ class Repaired:
     """
 
     wall: Wall
-    moves: tuple[Move, ...]
+    moves: tuple[_Move, ...]
     doubles: tuple[tuple[str, str], ...]
     splits: tuple[tuple[str, int], ...]
 
 
-def repair(wall: Wall, snap: float) -> Repaired:
+def repair(wall: Wall, snap: float) -> _Repaired:
     """The wall with gaps and overlaps closed; no vertex moves further than `snap` [length].
 
     Raises:
@@ -78,8 +78,8 @@ def repair(wall: Wall, snap: float) -> Repaired:
     after = _met(before, snap)
     onto = _faces_met(before, after, owner, snap)
     moves = tuple(
-        Move(blocks[owner[k]].id, int(k - np.searchsorted(owner, owner[k])), _pair(before[k]), _pair(after[k]))
-        for k in np.flatnonzero(np.linalg.norm(after - before, axis=1) > ROUNDING * snap).tolist()
+        _Move(blocks[owner[k]].id, int(k - np.searchsorted(owner, owner[k])), _pair(before[k]), _pair(after[k]))
+        for k in np.flatnonzero(np.linalg.norm(after - before, axis=1) > _ROUNDING * snap).tolist()
     )
     outlines, splits = [], []
     for number, block in enumerate(blocks):
@@ -90,7 +90,7 @@ def repair(wall: Wall, snap: float) -> Repaired:
         if added:
             splits.append((block.id, added))
     mended = wall.model_copy(update={"pattern": None, "blocks": outlines})
-    return Repaired(mended, moves, tuple(doubles), tuple(splits))
+    return _Repaired(mended, moves, tuple(doubles), tuple(splits))
 
 
 def _pair(point: FloatArray) -> tuple[float, float]:

@@ -16,7 +16,7 @@ from shapely.validation import explain_validity
 from harness.model.assembly import FloatArray, signed_area
 from harness.model.errors import InputError
 
-Vertex = tuple[float, float]
+_Vertex = tuple[float, float]
 
 
 def ringed(outer: FloatArray, holes: Sequence[FloatArray]) -> FloatArray:
@@ -60,7 +60,7 @@ def rings_of(line: FloatArray) -> list[FloatArray]:
     """The outline and the holes (j, 2) of a closed line of `ringed`; the line itself if it has no cut."""
     if len(line) < 8:  # two triangles and the two vertices of the cut once more
         return [line]
-    vertices: list[Vertex] = [(x, y) for x, y in line.tolist()]
+    vertices: list[_Vertex] = [(x, y) for x, y in line.tolist()]
     if len(set(vertices)) == len(vertices):
         return [line]
     steps = list(zip(vertices, vertices[1:] + vertices[:1], strict=True))

@@ -47,15 +47,15 @@ def _copied(data: Any) -> Any:
     return [_copied(item) for item in data] if isinstance(data, list) else data
 
 
-Place = tuple[int | str, ...]
+_Place = tuple[int | str, ...]
 
 
-def _in_the_file(place: Place) -> list[str]:
+def _in_the_file(place: _Place) -> list[str]:
     """A key of the order of the file: what is left out from its end does not shift what is still to be left out."""
     return [str(part).zfill(9) for part in place]
 
 
-def _place(data: Any, location: Place) -> Place:
+def _place(data: Any, location: _Place) -> _Place:
     """The part that is left out for a fault: a field of a block, an item of another list, or a field of the wall."""
     here: Any = data
     place: list[int | str] = []
@@ -69,7 +69,7 @@ def _place(data: Any, location: Place) -> Place:
     return tuple(place[:3] if place[:1] == ["blocks"] else place)
 
 
-def _present(data: Any, place: Place) -> Place:
+def _present(data: Any, place: _Place) -> _Place:
     """The part, or that which it is missing in."""
     here = data
     for number, part in enumerate(place):
@@ -79,7 +79,7 @@ def _present(data: Any, place: Place) -> Place:
     return place
 
 
-def _left_out(data: Any, place: Place) -> bool:
+def _left_out(data: Any, place: _Place) -> bool:
     """Leave a part out of the data; False if there is nothing left to leave out."""
     if not place:  # the wall gives no friction, or it gives two: the geometry does not depend on it
         amiss = "friction" not in data or "friction_angle" in data

@@ -36,21 +36,21 @@ class SupportReaction:
     y: float | None
 
 
-ReactionColumn = TableColumn[SupportReaction]
+_ReactionColumn = TableColumn[SupportReaction]
 
-REACTIONS: tuple[ReactionColumn, ...] = (
-    ReactionColumn("support", "string", "", "id of the fixed block", attrgetter("support")),
-    ReactionColumn("fx", "Float64", "force", "horizontal reaction, on the wall", attrgetter("fx"), "Fx"),
-    ReactionColumn("fy", "Float64", "force", "vertical reaction, on the wall", attrgetter("fy"), "Fy"),
-    ReactionColumn(
+REACTIONS: tuple[_ReactionColumn, ...] = (
+    _ReactionColumn("support", "string", "", "id of the fixed block", attrgetter("support")),
+    _ReactionColumn("fx", "Float64", "force", "horizontal reaction, on the wall", attrgetter("fx"), "Fx"),
+    _ReactionColumn("fy", "Float64", "force", "vertical reaction, on the wall", attrgetter("fy"), "Fy"),
+    _ReactionColumn(
         "moment",
         "Float64",
         "force length",
         "of the reaction about the centroid of the support, counter-clockwise",
         attrgetter("moment"),
     ),
-    ReactionColumn("x", "Float64", "length", "where the line of action meets the level y", attrgetter("x"), "at x"),
-    ReactionColumn("y", "Float64", "length", "level of the support's highest contact point", attrgetter("y"), "at y"),
+    _ReactionColumn("x", "Float64", "length", "where the line of action meets the level y", attrgetter("x"), "at x"),
+    _ReactionColumn("y", "Float64", "length", "level of the support's highest contact point", attrgetter("y"), "at y"),
 )
 """Columns of reactions; their units are kinds, which `harness.model.table.in_units` replaces by the units of a wall."""
 

@@ -20,15 +20,15 @@ from harness.model.pressure import Outlines, outlines_of
 from harness.model.rings import rings_of
 from harness.model.wall import Block
 
-SHARE = 1e-3
+_SHARE = 1e-3
 """Of the size of a block: faces as near as this touch, as in `harness.model.pressure`, and shorter ones are none."""
-LEVEL = 1e-6
+_LEVEL = 1e-6
 """Sine of the angle from upright within which a face is upright, as coordinates are rounded, and does not look up."""
 
-MOST_READ = 2_000_000
+_MOST_READ = 2_000_000
 """Vertices of blocks that touch faces and are compared with them, a few seconds of work."""
 
-Face = tuple[int, FloatArray, FloatArray]
+_Face = tuple[int, FloatArray, FloatArray]
 """A block and the two ends (2,) of a face of it, from left to right."""
 
 
@@ -43,7 +43,7 @@ class Upward:
     def __init__(self, blocks: Sequence[Block], polygons: Sequence[FloatArray], gravity: Point) -> None:
         self._blocks, self._to_up = blocks, _to_up(gravity)
         self._polygons = [polygon @ self._to_up.T for polygon in polygons]
-        self._found: dict[str, list[Face]] = {}
+        self._found: dict[str, list[_Face]] = {}
 
     def loads(self, given: Travelling, place: str, most: int) -> list[Loads]:
         """A live load for each place of a travelling load, from left to right as gravity has it.
@@ -75,7 +75,7 @@ class Upward:
                 found.append(Loads(live=Load(points=[force])))
         return found
 
-    def _faces(self, given: Travelling) -> list[Face]:
+    def _faces(self, given: Travelling) -> list[_Face]:
         """The faces that a travelling load acts on, from left to right."""
         if given.along not in self._found:
             free = [k for k, block in enumerate(self._blocks) if not block.fixed]
@@ -97,7 +97,7 @@ def _to_up(gravity: Point) -> FloatArray:
     return np.array([[-y, x], [-x, -y]])
 
 
-def upward_faces(polygons: Sequence[FloatArray], chosen: Iterable[int], *, from_above: bool) -> list[Face]:
+def upward_faces(polygons: Sequence[FloatArray], chosen: Iterable[int], *, from_above: bool) -> list[_Face]:
     """The parts of edges of the chosen blocks that look towards +y and touch no other block.
 
     Args:
@@ -111,10 +111,10 @@ def upward_faces(polygons: Sequence[FloatArray], chosen: Iterable[int], *, from_
     outlines = _outlines_and_holes(polygons)
     # What looks up runs from right to left on a counter-clockwise outline.
     along = outlines.first - outlines.last
-    looks_up = (along[:, 0] > LEVEL * np.hypot(*along.T)) & np.isin(outlines.block, list(chosen))
+    looks_up = (along[:, 0] > _LEVEL * np.hypot(*along.T)) & np.isin(outlines.block, list(chosen))
     edges = np.flatnonzero(looks_up)
     shapes = shapes_of(polygons)
-    touch = SHARE * np.sqrt(shapely.area(shapes))[outlines.block[edges]]
+    touch = _SHARE * np.sqrt(shapely.area(shapes))[outlines.block[edges]]
     seen = _highest(outlines, edges) if from_above else _bare(outlines, edges, shapes, touch)
     left, along = outlines.last[edges], along[edges]
     length = np.hypot(*along.T)
@@ -172,9 +172,9 @@ def _bare(
         others = owner[face] != other
         face, other = face[others], other[others]
         read += int(vertices[other].sum())
-        if read > MOST_READ:
+        if read > _MOST_READ:
             raise InputError(
-                f"so many blocks touch the {len(lines):,} faces that look up that more than {MOST_READ:,} "
+                f"so many blocks touch the {len(lines):,} faces that look up that more than {_MOST_READ:,} "
                 "vertices would be compared with them",
                 'Say "along": "top", simplify the outlines, or write the load cases out as point forces',
                 "travelling",

@@ -19,19 +19,19 @@ from methods.de.holds.motion import StaticLimit
 from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket, held_forces, mechanism_at
 from methods.de.settings import HoldSettings
 
-BRACKET_MEANING = (
+_BRACKET_MEANING = (
     "[lowest multiplier held, highest multiplier moving] over the sweep orders: every order was held at or above the "
     "lower end and moved at or below the upper end"
 )
 
-EngineMaker = Callable[[IntArray, IntArray, MassScaling], Engine]
+_EngineMaker = Callable[[IntArray, IntArray, MassScaling], Engine]
 """From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
 
 
 def solve_by_holds(
     assembly: Assembly,
     settings: HoldSettings,
-    make_engine: EngineMaker,
+    make_engine: _EngineMaker,
     tolerance: float,
     candidates: list[MassScaling] | None = None,
 ) -> Answer:
@@ -238,5 +238,5 @@ def _collapse(brackets: list[OrderBracket]) -> Answer:
         sentence,
         multiplier=best.middle,
         bracket=(low, high),
-        bracket_meaning=BRACKET_MEANING,
+        bracket_meaning=_BRACKET_MEANING,
     )

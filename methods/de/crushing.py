@@ -22,7 +22,7 @@ from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 
 
 @dataclass(frozen=True)
-class HeldStrips:
+class _HeldStrips:
     """When the brackets of walls that are set in end.
 
     Attributes:
@@ -37,7 +37,7 @@ class HeldStrips:
 
 
 def held_by_strips(
-    assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldStrips = HeldStrips()
+    assembly: Assembly, solve: Callable[[Assembly], Answer], options: _HeldStrips = _HeldStrips()
 ) -> Answer:
     """The answer for a component whose joints crush; `solve` answers for walls that are set in and do not crush."""
     share = stood = np.zeros(assembly.n_interfaces)

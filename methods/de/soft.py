@@ -26,7 +26,7 @@ from methods.de.holds.order_bracket import LOOSE
 from methods.de.settings import LOOK, RISE, SoftSettings
 from methods.numerics.claims import at_limit, with_proof
 
-BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
+_BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 STIFFNESS = 1e6
 """Of joints where none is given, in mean dead loads of a block over the square of the length scale: as good as rigid on
@@ -37,7 +37,7 @@ ROUNDING = 2e-4
 
 
 @dataclass(frozen=True)
-class SoftHoldTuning:
+class _SoftHoldTuning:
     """Holds of a wall with deformable joints.
 
     Attributes:
@@ -77,7 +77,7 @@ class Holds:
     fell: float | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
-    options: SoftHoldTuning = SoftHoldTuning()
+    options: _SoftHoldTuning = _SoftHoldTuning()
 
     def __post_init__(self) -> None:
         """The wall as it is."""
@@ -232,7 +232,7 @@ def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap:
         sentence,
         multiplier=0.5 * (stood + fell),
         bracket=(stood, fell),
-        bracket_meaning=BRACKET_MEANING,
+        bracket_meaning=_BRACKET_MEANING,
     )
 
 
@@ -249,7 +249,7 @@ def _stopped(holds: Holds, joints: str) -> Answer:
         "no more than the middle of what is known so far"
     )
     answer = Answer(Status.OK, Finding.COLLAPSES, sentence, 0.5 * (stood + fell), (stood, fell), details=details)
-    answer.bracket_meaning = BRACKET_MEANING
+    answer.bracket_meaning = _BRACKET_MEANING
     return answer
 
 

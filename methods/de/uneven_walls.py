@@ -22,7 +22,7 @@ from methods.de.settings import REACH, ClosedSettings, UnevenSettings
 from methods.de.uneven.gapped import GappedWall, load_gapped
 from methods.de.uneven.settled_contacts import Loading, load_uneven, settle_uneven
 
-BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
+_BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 
 class UnevenBlocks(Solver):
@@ -48,7 +48,7 @@ class UnevenBlocks(Solver):
             f"{wall} came to rest at {found.stood:.6g} and fell at {found.fell:.6g}.",
             multiplier=0.5 * (found.stood + found.fell),
             bracket=(found.stood, found.fell),
-            bracket_meaning=BRACKET_MEANING,
+            bracket_meaning=_BRACKET_MEANING,
             flow="approximate",
             details={"drift": found.drift},
         )
@@ -115,7 +115,7 @@ def _concluded(wall: str, loaded: tuple[float, float | None] | None) -> Answer:
         f"fell at {fell:.6g}.",
         multiplier=0.5 * (stood + fell),
         bracket=(stood, fell),
-        bracket_meaning=BRACKET_MEANING,
+        bracket_meaning=_BRACKET_MEANING,
         flow="approximate",
     )
 

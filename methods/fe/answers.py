@@ -116,7 +116,7 @@ def collapse_answer(model: WallModel, results: list[HistoryResult], factorisatio
     iterations = int(details["events"])
     if most_steps and results:
         shown = (reached or results)[0].record.steps
-        details |= load_steps(model, shown, most_steps).as_details() if shown else {}
+        details |= _load_steps(model, shown, most_steps).as_details() if shown else {}
     if not reached:
         if results and results[0].end == PathEnd.UNBOUNDED:
             details["path_status"] = "unbounded"
@@ -281,7 +281,7 @@ def single_state_answer(
     )
 
 
-def load_steps(model: WallModel, steps: list[PathStep], most: int) -> LoadSteps:
+def _load_steps(model: WallModel, steps: list[PathStep], most: int) -> LoadSteps:
     """At most so many of the steps of a path (one at least), evenly picked, the first and the last among them."""
     pick = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), most)).astype(int))
     kept = [steps[-1]] if most == 1 else [steps[k] for k in pick]

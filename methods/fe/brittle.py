@@ -37,7 +37,7 @@ from methods.springs.rest.newton import Equilibrium
 
 
 @dataclass
-class BrittlePath:
+class _BrittlePath:
     """A path on which joints break.
 
     Attributes:
@@ -143,7 +143,7 @@ def brittle_answer(
 
     Args:
         assembly: the wall; its components are followed apart.
-        settings: of `fe`; scale: a multiplier of the order of collapse; max_events: as `BrittlePath` has it.
+        settings: of `fe`; scale: a multiplier of the order of collapse; max_events: as `_BrittlePath` has it.
         tuning: initial shears that are tried in turn where ties lead the path astray.
     """
     solved: list[tuple[Assembly, Answer]] = []
@@ -207,11 +207,11 @@ def _traced(
     gravity = gravity_state(model, make_factor(model))
     if not gravity.found:
         return gravity_failure(model, gravity)
-    path = BrittlePath(assembly, settings, scale, max_events, model, gravity)
+    path = _BrittlePath(assembly, settings, scale, max_events, model, gravity)
     return best_so_far(partial(_followed, path), partial(_stopped, path))
 
 
-def _followed(path: BrittlePath) -> Answer:
+def _followed(path: _BrittlePath) -> Answer:
     """The answer at the end of a path; raises OutOfTime where the time is over."""
     try:
         while True:
@@ -230,7 +230,7 @@ def _followed(path: BrittlePath) -> Answer:
         return _lost(path, SENTENCES[PathEnd.BREAKDOWN])
 
 
-def _at_the_end(path: BrittlePath, way: LoadPath) -> Answer:
+def _at_the_end(path: _BrittlePath, way: LoadPath) -> Answer:
     """The answer where a path has ended without a further break."""
     follower, model = way.follower, path.model
     state: PlateauState | None = None
@@ -250,7 +250,7 @@ def _at_the_end(path: BrittlePath, way: LoadPath) -> Answer:
     return at_limit(path.wall, answer)
 
 
-def _collapse_by_breaking(path: BrittlePath, joints: IntArray) -> Answer:
+def _collapse_by_breaking(path: _BrittlePath, joints: IntArray) -> Answer:
     """The answer where no equilibrium is left once these joints have lost their strength at a constant multiplier.
 
     Two things prove it: forces in equilibrium at this multiplier while the joints are whole and at their strength, and
@@ -291,7 +291,7 @@ def _collapse_by_breaking(path: BrittlePath, joints: IntArray) -> Answer:
     )
 
 
-def _lost(path: BrittlePath, why: str) -> Answer:
+def _lost(path: _BrittlePath, why: str) -> Answer:
     """The answer of a path that came to no end."""
     reached = f", up to {path.record.peak:.6g} times the live load" if np.isfinite(path.record.peak) else ""
     sentence = f"no plateau was reached: {why}{reached}; {_order(path)}"
@@ -299,13 +299,13 @@ def _lost(path: BrittlePath, why: str) -> Answer:
     return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence, path=curve, details=path.details("not_converged"))
 
 
-def _stopped(path: BrittlePath) -> Answer:
+def _stopped(path: _BrittlePath) -> Answer:
     """The answer where the time is over."""
     lost = _lost(path, f"the path was {STOPPED}")
     return replace(lost, details=lost.details | {"stopped_by_limit": True})
 
 
-def _order(path: BrittlePath) -> str:
+def _order(path: _BrittlePath) -> str:
     """Which joints broke where, in words."""
     if not path.broken:
         return "no brittle joint broke"

@@ -26,7 +26,7 @@ from methods.springs.path.path_record import PathRecord
 
 
 @dataclass(frozen=True)
-class TrescaTuning:
+class _TrescaTuning:
     """How the multiplier marches up, and how friction limits are iterated.
 
     Attributes:
@@ -81,7 +81,7 @@ class ConvexResult:
     repeated: float = 0.0
 
 
-class TrescaProgramme:
+class _TrescaProgramme:
     """The quadratic programme of one wall, factorised once by OSQP; unknowns (u, z, e+, e-)."""
 
     def __init__(self, model: WallModel, accuracy: float) -> None:
@@ -181,7 +181,7 @@ def bracket_collapse(
     resolution: float,
     fixed_points: int,
     accuracy: float = 1e-6,
-    options: TrescaTuning = TrescaTuning(),
+    options: _TrescaTuning = _TrescaTuning(),
 ) -> ConvexResult:
     """March the multiplier up and bisect the step at which the fixed point is lost.
 
@@ -190,7 +190,7 @@ def bracket_collapse(
         fixed_points: Tresca iterations in a row that may bring a step no nearer; accuracy: of OSQP.
         options: of the march and of the iteration.
     """
-    programme = TrescaProgramme(model, accuracy)
+    programme = _TrescaProgramme(model, accuracy)
     record = PathRecord()
     limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points, options)
     if limit is None:
@@ -231,11 +231,11 @@ def bracket_collapse(
 
 
 def _settle(
-    programme: TrescaProgramme,
+    programme: _TrescaProgramme,
     multiplier: float,
     limit: FloatArray,
     count: int,
-    options: TrescaTuning,
+    options: _TrescaTuning,
     share: float = 1.0,
 ) -> FloatArray | None:
     """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken.

@@ -24,7 +24,7 @@ from methods.springs.rest.newton import Equilibrium, newton, settled
 
 
 @dataclass(frozen=True)
-class LoadControl:
+class _LoadControl:
     """Steps of the multiplier.
 
     Attributes:
@@ -41,7 +41,7 @@ class LoadControl:
 
 
 @dataclass(frozen=True)
-class DisplacementControl:
+class _DisplacementControl:
     """Steps of a prescribed displacement.
 
     Attributes:
@@ -83,7 +83,7 @@ class IncrementalResult:
 
 
 @dataclass(frozen=True)
-class StepPoint:
+class _StepPoint:
     """Displacements u (N,), the multiplier and the states (P,) of the gaps in equilibrium."""
 
     u: FloatArray
@@ -98,8 +98,8 @@ def march(
     first_step: float,
     cuts: int,
     displacement_steps: int,
-    loads: LoadControl = LoadControl(),
-    displacements: DisplacementControl = DisplacementControl(),
+    loads: _LoadControl = _LoadControl(),
+    displacements: _DisplacementControl = _DisplacementControl(),
 ) -> IncrementalResult:
     """Load control from gravity, then displacement control.
 
@@ -109,7 +109,7 @@ def march(
         loads, displacements: how the steps are taken.
     """
     record = PathRecord()
-    point, step, iterations, cut = StepPoint(gravity.u, 0.0, gravity.state), first_step, 0, 0
+    point, step, iterations, cut = _StepPoint(gravity.u, 0.0, gravity.state), first_step, 0, 0
     while cut <= cuts and point.multiplier < loads.furthest * first_step:
         answer = newton(model, factor, point.u, point.multiplier + step, model.history, loads.iterations)
         iterations += answer.iterations
@@ -117,7 +117,7 @@ def march(
             step *= loads.shorter
             cut += 1
             continue
-        point = StepPoint(answer.u, point.multiplier + step, answer.state)
+        point = _StepPoint(answer.u, point.multiplier + step, answer.state)
         _note(record, model, point)
         if cut == 0:
             step *= loads.longer
@@ -143,11 +143,11 @@ def march(
 def _displacement_control(
     model: WallModel,
     factor: Factor,
-    point: StepPoint,
+    point: _StepPoint,
     travel: FloatArray,
     steps: int,
     record: PathRecord,
-    options: DisplacementControl,
+    options: _DisplacementControl,
 ) -> tuple[PlateauState | None, float, int]:
     """The collapse state that displacement control leads to, or None; the last multiplier; Newton iterations.
 
@@ -183,7 +183,7 @@ def _displacement_control(
     return None, point.multiplier, iterations
 
 
-def _note(record: PathRecord, model: WallModel, point: StepPoint) -> None:
+def _note(record: PathRecord, model: WallModel, point: _StepPoint) -> None:
     """Add a point in equilibrium to the record."""
     trial = model.kt * model.strains(point.u)[1] + model.history
     record.add(point.multiplier, float(model.live @ point.u), 0, 0, model.bar_tensions(trial))
@@ -199,8 +199,8 @@ def _farthest(motion: FloatArray) -> FloatArray:
 
 
 def _controlled(
-    model: WallModel, factor: Factor, point: StepPoint, control: FloatArray, goal: float, options: DisplacementControl
-) -> tuple[StepPoint | None, int]:
+    model: WallModel, factor: Factor, point: _StepPoint, control: FloatArray, goal: float, options: _DisplacementControl
+) -> tuple[_StepPoint | None, int]:
     """Equilibrium at a prescribed displacement control'u = goal, None where Newton finds none; and its iterations."""
     u, multiplier, state = point.u, point.multiplier, point.state
     scale, share = load_scale(model, multiplier), 1.0
@@ -227,14 +227,14 @@ def _controlled(
                 np.abs(model.residual(u, multiplier, model.history, state)).max()
                 < model.options.newton.balanced * scale
             ):
-                return StepPoint(u, multiplier, state), count + 1
+                return _StepPoint(u, multiplier, state), count + 1
             continue
         u, multiplier = u + share * step, multiplier + share * rise
         state = landed if share == 1.0 else model.states(u, model.history)
     return None, options.iterations
 
 
-def _collapse(model: WallModel, point: StepPoint, direction: FloatArray) -> PlateauState | None:
+def _collapse(model: WallModel, point: _StepPoint, direction: FloatArray) -> PlateauState | None:
     """The collapse state of a wall that moves at constant multiplier, or None when it fails its check."""
     opening, slip = model.strains(point.u)
     velocity = direction / np.abs(direction).max()

@@ -9,11 +9,11 @@ from harness.model.method import Answer, Finding, Status
 from methods.la.answers import falls_answer, not_converged, unbounded_answer
 from methods.numerics.stress_blocks import BlockLimit, Greatest
 
-ROUGH = (
+_ROUGH = (
     " The solver ended without the accuracy asked of it: the answer is as good as the two multipliers agree and the "
     "judge finds."
 )
-STATED = 1e-6
+_STATED = 1e-6
 """Gap between the multipliers of forces and mechanism, relative to the larger or to the load unit, that is accepted."""
 
 
@@ -53,7 +53,7 @@ def dead_load_decides(assembly: Assembly, greatest: Greatest) -> Answer | FloatA
             Status.OK,
             Finding.STANDS,
             "Under its dead load the wall has an equilibrium within yield; no live load is given."
-            + (ROUGH if own.inaccurate else ""),
+            + (_ROUGH if own.inaccurate else ""),
             forces=forces,
             forces_multiplier=0.0,
             iterations=own.rounds,
@@ -63,14 +63,14 @@ def dead_load_decides(assembly: Assembly, greatest: Greatest) -> Answer | FloatA
 
 def _collapse(assembly: Assembly, found: BlockLimit) -> Answer:
     gap = (found.upper - found.multiplier) / max(assembly.load_unit, abs(found.upper))
-    if found.outcome != "optimal" or not gap <= STATED:
+    if found.outcome != "optimal" or not gap <= _STATED:
         return not_converged(f"The programme ended as {found.outcome}, with the gap {gap:.2g}.", found.rounds)
     multiplier = max(found.multiplier, 0.0)
     return Answer(
         Status.OK,
         Finding.COLLAPSES,
         f"The greatest multiplier within statics and yield, crushing included, is {multiplier:.7g}; by virtual work on "
-        f"its mechanism none is above {found.upper:.7g}.{ROUGH if found.inaccurate else ''}",
+        f"its mechanism none is above {found.upper:.7g}.{_ROUGH if found.inaccurate else ''}",
         multiplier=multiplier,
         forces=found.forces,
         forces_multiplier=multiplier,

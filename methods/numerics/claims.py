@@ -16,11 +16,11 @@ from harness.model.limit import accuracy, gross_power, smallest_resolved, streng
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
 
-SMALL = 1e-3
+_SMALL = 1e-3
 """Live load, as a part of the dead load, below which a load that was measured leaves the limit to statics."""
 
 
-def bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
+def _bear(assembly: Assembly, answer: Answer, multiplier: float) -> FloatArray | None:
     """Forces (m, 3) with which a component bears its dead load and `multiplier` times the live load; None if none.
 
     Where the answer holds forces at a higher multiplier, those between it and the dead load do: yield is convex.
@@ -40,12 +40,14 @@ def analysed(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
     Components have the ties and props of the wall as further joints (`harness.model.bars.with_bars_as_joints`).
     """
     rows, bars = with_bars_as_joints(assembly), assembly.bars
-    answer = with_proof(rows, analysed_apart(rows, lambda part: _if_unbounded(part, at_limit(part, solve(part))), bear))
+    answer = with_proof(
+        rows, analysed_apart(rows, lambda part: _if_unbounded(part, at_limit(part, solve(part))), _bear)
+    )
     return with_bar_forces(answer, bars, assembly.n_interfaces) if len(bars) else answer
 
 
 @dataclass(frozen=True, eq=False)
-class Statics:
+class _Statics:
     """What statics alone says of a wall.
 
     Attributes:
@@ -59,7 +61,7 @@ class Statics:
     at_limit: bool
 
 
-def _statics_of(assembly: Assembly) -> Statics | None:
+def _statics_of(assembly: Assembly) -> _Statics | None:
     """What statics says of a wall, or None where it has no greatest multiplier.
 
     Where rounding leaves no equilibrium at any multiplier, the strengthened wall shows one that is at its limit.
@@ -69,7 +71,7 @@ def _statics_of(assembly: Assembly) -> Statics | None:
         if found is not None:
             multiplier, forces, mechanism = found
             near = abs(multiplier) <= smallest_resolved(assembly, mechanism)
-            return Statics(multiplier, forces, mechanism, near) if near or wall is assembly else None
+            return _Statics(multiplier, forces, mechanism, near) if near or wall is assembly else None
     return None
 
 
@@ -93,7 +95,7 @@ def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
     if multiplier is not None:
         low = multiplier if answer.bracket is None else answer.bracket[0]
         if mechanism is None or answer.flow == "approximate":
-            return low <= SMALL * assembly.load_unit
+            return low <= _SMALL * assembly.load_unit
         return low <= smallest_resolved(assembly, mechanism)
     if answer.finding is Finding.FALLS and answer.flow == "associated" and mechanism is not None:
         gain = float((assembly.dead * mechanism).sum()) - strength_power(assembly, mechanism)
@@ -110,7 +112,7 @@ def _at_limit(assembly: Assembly, answer: Answer) -> Answer:
     bears = 0.0 if statics is None else statics.multiplier
     if abs(bears) <= np.finfo(float).eps * assembly.load_unit:
         bears = 0.0  # rounding, of a mechanism on which the dead load does no work
-    near = -SMALL * assembly.load_unit <= bears < 0.0 and answer.finding is not Finding.FALLS
+    near = -_SMALL * assembly.load_unit <= bears < 0.0 and answer.finding is not Finding.FALLS
     if statics is not None and bears < 0.0 and (near or answer.multiplier is not None):
         return _falls(answer, statics.mechanism)
     if answer.multiplier is not None and answer.multiplier < 0.0:
@@ -163,7 +165,7 @@ def _stands_though_joints_give(answer: Answer, bears: float) -> Answer:
     )
 
 
-def _with_limit(answer: Answer, statics: Statics) -> Answer:
+def _with_limit(answer: Answer, statics: _Statics) -> Answer:
     """The answer of a wall at its limit; one that has no forces or no mechanism takes those of statics."""
     if answer.multiplier is None:
         said = f" The method's own sentence: {answer.sentence.rstrip('.')}."

@@ -28,7 +28,7 @@ def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]
         return plastic
     said = "The time was over before the wall without strength was solved."
     residual = best_so_far(lambda: solve(assembly.residual), lambda: Answer(Status.NOT_CONVERGED, Finding.NONE, said))
-    return between(assembly, plastic, residual) if assembly.breaks else with_residual(plastic, residual)
+    return _between(assembly, plastic, residual) if assembly.breaks else _with_residual(plastic, residual)
 
 
 def by_component(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
@@ -36,7 +36,7 @@ def by_component(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Ans
     return plastic_and_residual(assembly, lambda wall: analysed(wall, solve))
 
 
-def with_residual(plastic: Answer, residual: Answer) -> Answer:
+def _with_residual(plastic: Answer, residual: Answer) -> Answer:
     """The answer of a wall whose joints keep their strength, with that of the same wall without.
 
     Joints of mortar are brittle: what is left of them once they have moved is friction, the residual strength. Its
@@ -56,7 +56,7 @@ def with_residual(plastic: Answer, residual: Answer) -> Answer:
     return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
 
 
-def between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
+def _between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
     """One of the two answers for a wall with brittle joints, with the other: a safe and an upper estimate.
 
     An associated maximum is an upper bound if its joints keep their strength, so that is the one returned, with

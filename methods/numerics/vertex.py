@@ -24,7 +24,7 @@ from methods.numerics.silent_highs import SilentHighs
 
 
 @dataclass(frozen=True)
-class VertexTolerances:
+class _VertexTolerances:
     """How a vertex is refined, and what is rounding in it.
 
     Attributes:
@@ -106,7 +106,7 @@ class StandardForm:
         column: tuple[FloatArray, FloatArray],
         row: tuple[FloatArray, FloatArray],
         groups: IntArray | None = None,
-        tolerances: VertexTolerances = VertexTolerances(),
+        tolerances: _VertexTolerances = _VertexTolerances(),
     ) -> None:
         self._tolerances = tolerances
         self._rows, self._columns = matrix.shape
@@ -156,7 +156,7 @@ class StandardForm:
         if int(basic.sum()) != self._rows:
             return None
         try:
-            basis = Basis(self._matrix[:, basic], self._tolerances.rounds)
+            basis = _Basis(self._matrix[:, basic], self._tolerances.rounds)
             value[basic] = basis.solved(-_extended_product(self._by_row, value))
             dual = basis.multipliers(self._cost[basic])
         except NumericalFailure:
@@ -235,7 +235,7 @@ class StandardForm:
 _STATUS = {int(status): status for status in highspy.HighsBasisStatus.__members__.values()}
 
 
-class Basis:
+class _Basis:
     """The factors of a square sparse matrix, once, and what they solve: every row to rounding of its own terms.
 
     Rows and columns are scaled by powers of two, which rounds nothing.

@@ -13,7 +13,7 @@ from methods.numerics.claims import analysed
 from methods.peers.settings import BisectionSettings
 
 
-class Borne(Protocol):
+class _Borne(Protocol):
     """A wall in a program that says of a multiplier whether it bears it.
 
     Attributes:
@@ -80,7 +80,7 @@ class Bisection(Solver):
             refusal = f"{program} takes one friction coefficient for all joints; the wall has {low:g} to {high:g}"
         if refusal:
             return Answer(Status.REFUSED, Finding.NONE, refusal)
-        problem: Borne = self._problem(assembly, settings, package)
+        problem: _Borne = self._problem(assembly, settings, package)
         borne, not_borne = list[float](), list[float]()
 
         def bisected() -> bool:
@@ -102,7 +102,7 @@ class Bisection(Solver):
         return self._concluded(problem, settings, max(borne, default=None), min(not_borne, default=None), ended)
 
     def _concluded(
-        self, problem: Borne, settings: BisectionSettings, borne: float | None, not_borne: float | None, ended: bool
+        self, problem: _Borne, settings: BisectionSettings, borne: float | None, not_borne: float | None, ended: bool
     ) -> Answer:
         words, asked = f"{self._words.program} {self._words.bears}", {"asked": problem.said}
         if borne is None:

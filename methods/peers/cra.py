@@ -31,7 +31,7 @@ _MODULE = "compas_cra.equilibrium.cra_native"
 _NO_PROOF = "that it finds none is no proof of collapse"
 
 
-class Solvable:
+class _Solvable:
     """The problem of compas_cra for a wall, solved at one multiplier after another.
 
     Args:
@@ -133,7 +133,7 @@ class RigidBlockEquilibrium(Bisection):
 
     def __init__(self) -> None:
         words = Words("compas_cra", "found an equilibrium without tension", _NO_PROOF)
-        super().__init__("rbe", words, _MODULE, "cra", Solvable)
+        super().__init__("rbe", words, _MODULE, "cra", _Solvable)
 
 
 class CoupledRigidBlockAnalysis(Bisection):
@@ -141,4 +141,4 @@ class CoupledRigidBlockAnalysis(Bisection):
 
     def __init__(self) -> None:
         words = Words("compas_cra", "found coupled forces and motions", _NO_PROOF)
-        super().__init__("cra", words, _MODULE, "cra", Solvable)
+        super().__init__("cra", words, _MODULE, "cra", _Solvable)

@@ -26,7 +26,7 @@ _PLANE = (0, 2)
 """Coordinates of LMGC90 that are x and y of the wall; the turn from the first to the second is minus its turn."""
 
 
-class Followed:
+class _Followed:
     """A wall under one load after another in LMGC90, each from the wall as drawn.
 
     Args:
@@ -171,4 +171,4 @@ class ContactDynamics(Bisection):
 
     def __init__(self) -> None:
         words = Words("LMGC90", "came to rest", "a motion that was followed is no proof of collapse")
-        super().__init__("lmgc90", words, "compas_lmgc90.solver", "lmgc90", Followed)
+        super().__init__("lmgc90", words, "compas_lmgc90.solver", "lmgc90", _Followed)

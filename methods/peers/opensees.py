@@ -31,7 +31,7 @@ _CONTACT = "zeroLengthContactASDimplex"
 
 
 @dataclass(frozen=True)
-class OpenSeesTuning:
+class _OpenSeesTuning:
     """What is not for the user of OpenSees to choose.
 
     Attributes:
@@ -49,7 +49,7 @@ class OpenSeesTuning:
     excess: float = 1e-6
 
 
-class ContactModel:
+class _ContactModel:
     """A wall in the one domain that OpenSees has in a process.
 
     Args:
@@ -58,7 +58,7 @@ class ContactModel:
         options: as above.
     """
 
-    def __init__(self, assembly: Assembly, settings: OpenSeesSettings, options: OpenSeesTuning) -> None:
+    def __init__(self, assembly: Assembly, settings: OpenSeesSettings, options: _OpenSeesTuning) -> None:
         self._ops = ops = _load_opensees()
         self._options, self._stiffness = options, settings.stiffness
         self.assembly, self._free = assembly, assembly.free.tolist()
@@ -183,7 +183,7 @@ class OpenSeesContacts(Solver):
         options: of the model.
     """
 
-    def __init__(self, options: OpenSeesTuning = OpenSeesTuning()) -> None:
+    def __init__(self, options: _OpenSeesTuning = _OpenSeesTuning()) -> None:
         self._options = options
 
     def solve(self, assembly: Assembly, settings: OpenSeesSettings) -> Answer:
@@ -198,7 +198,7 @@ class OpenSeesContacts(Solver):
     def _of_component(self, assembly: Assembly, settings: OpenSeesSettings) -> Answer:
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
-        model = ContactModel(assembly, settings, self._options)
+        model = _ContactModel(assembly, settings, self._options)
         if not model.stands_dead_load():
             sentence = "OpenSees does not converge under the dead load, which does not show that the wall falls"
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
@@ -227,7 +227,7 @@ class OpenSeesContacts(Solver):
         return self._concluded(model, settings, path, ended)
 
     def _concluded(
-        self, model: ContactModel, settings: OpenSeesSettings, path: dict[str, list[float]], ended: bool | None
+        self, model: _ContactModel, settings: OpenSeesSettings, path: dict[str, list[float]], ended: bool | None
     ) -> Answer:
         reached = model.multiplier
         forces = model.contact_forces()

@@ -27,13 +27,13 @@ _MARKERS = (
     "M-1.2-4.2h2.4v3h3v2.4h-3v3h-2.4v-3h-3v-2.4h3z",
 )
 _DASHES = ("", "7 3", "2 3", "9 3 2 3", "4 2", "12 4")
-COLOURS = 6
-BESIDE = 7.0
+_COLOURS = 6
+_BESIDE = 7.0
 """Distance between bars of two series at one place; a bar is 5 wide."""
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """Relative difference of values that are one: an axis of such values is as wide as one of a single value."""
 _MOST_POINTS = 300
-SMALLEST = 1.0
+_SMALLEST = 1.0
 """Least size of a mark: smaller ones cannot be distinguished on a page."""
 
 
@@ -105,7 +105,7 @@ class Chart:
         In units of the drawing; zero where no other series has bars.
         """
         barred = [k for k, series in enumerate(self.series) if series.bars]
-        return BESIDE * (barred.index(number) - (len(barred) - 1) / 2.0) if number in barred else 0.0
+        return _BESIDE * (barred.index(number) - (len(barred) - 1) / 2.0) if number in barred else 0.0
 
     @property
     def per_row(self) -> int:
@@ -144,7 +144,7 @@ class Axis:
             low, high = low / 1.25, high * 1.25
         else:
             low = min(low, 0.0) if zero else low
-            apart = high - low if high - low > ROUNDING * max(abs(low), abs(high)) else 0.0
+            apart = high - low if high - low > _ROUNDING * max(abs(low), abs(high)) else 0.0
             room = 0.06 * apart or 0.05 * abs(high) or 0.5
             low, high = (low if zero and low == 0.0 else low - room), high + room
         self.low, self.high = low, high
@@ -302,7 +302,7 @@ def _axes(chart: Chart, across: Axis, up: Axis, height: float, top: float) -> Ma
 def _look(series: Series, number: int) -> tuple[Markup, Markup, str, str]:
     """Attributes of a line and of a marker of a series, its dash array and the path data of its marker."""
     if series.mark is None:
-        name = f"s{number % COLOURS}"
+        name = f"s{number % _COLOURS}"
         line, marker = Markup('class="line {}"').format(name), Markup('class="mark {}"').format(name)
         return line, marker, _DASHES[number % len(_DASHES)], _MARKERS[number % len(_MARKERS)]
     line = Markup('class="line" style="color:{}"').format(series.mark.colour)
@@ -337,7 +337,7 @@ def _series(series: Series, number: int, across: Axis, up: Axis, aside: float) -
         if place is not None and bottom is not None and top is not None:
             drawn += Markup('<path {} d="M{:.1f} {:.1f}V{:.1f}"/>').format(bar, place, bottom, top)
     # Later series are smaller, so that points on one place show as rings.
-    size = max(SMALLEST, 1.35 - 0.15 * number)
+    size = max(_SMALLEST, 1.35 - 0.15 * number)
     if series.marks or len(points) == 1:
         for px, py, x, y in points:
             drawn += Markup(

@@ -17,13 +17,13 @@ from reports.drawing.wall_drawing import displaced_drawing
 from reports.labels import labels, numbers
 from reports.memo import memo
 
-TIMES = ("cpu_seconds", "seconds", "search_seconds")
+_TIMES = ("cpu_seconds", "seconds", "search_seconds")
 """Columns of a path that tell when a value was found [s]."""
 SAME = 1e-9
 """Relative difference of values that a chart would draw as one: there is nothing to see, and words say it."""
-LEVEL = 0.01
+_LEVEL = 0.01
 """Part of the greatest load by which a plateau may rise or fall: a hundredth is not seen in a chart."""
-LENGTHS = ("live_displacement", "displacement")
+_LENGTHS = ("live_displacement", "displacement")
 
 
 @memo
@@ -38,7 +38,7 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
         loads = result.path.get("multiplier", [])
         if len(loads) < 2:
             continue
-        for name in LENGTHS:
+        for name in _LENGTHS:
             if name in result.path:
                 found.append(_load_displacement(item, result, result.path[name], loads))
                 break
@@ -88,10 +88,10 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
 def _until_plateau(moved: list[float], loads: list[float]) -> int:
     """How many points to draw: a plateau followed to a huge displacement would squeeze the rest into the axis.
 
-    Drawn is three times the displacement from which on the load stays within `LEVEL` of its end.
+    Drawn is three times the displacement from which on the load stays within `_LEVEL` of its end.
     """
     top = max((abs(value) for value in loads), default=0.0)
-    last = max((k for k, load in enumerate(loads) if abs(load - loads[-1]) > LEVEL * top), default=None)
+    last = max((k for k, load in enumerate(loads) if abs(load - loads[-1]) > _LEVEL * top), default=None)
     if last is None:
         return len(loads)
     reached = min(last + 1, len(loads) - 1)
@@ -102,7 +102,7 @@ def _until_plateau(moved: list[float], loads: list[float]) -> int:
 def _release(item: CaseResults, result: Result) -> list[tuple[str, Markup]]:
     """The collapse after the bracket: displacement over time, and the wall at the end."""
     found = []
-    moved = next((result.path[name] for name in LENGTHS if name in result.path), None)
+    moved = next((result.path[name] for name in _LENGTHS if name in result.path), None)
     release = AnswerDetails(result.details).release
     unit = "" if release is None else release.time_unit
     if moved is not None and len(moved) > 1:
@@ -217,7 +217,7 @@ def _history(results: list[Result]) -> tuple[str, Markup] | None:
     """The least value known over search time, of every method that recorded when it found what."""
     series = []
     for result in results:
-        column = next((name for name in TIMES if name in result.path), None)
+        column = next((name for name in _TIMES if name in result.path), None)
         values = result.path.get("least_known") or result.path.get("multiplier") or []
         if column is None or not values or len(values) != len(result.path[column]):
             continue

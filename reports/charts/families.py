@@ -21,10 +21,10 @@ from reports.geometry import shapes
 from reports.labels import labels, numbers
 
 _SMALLEST_FAMILY = 3
-RECTANGLE = 1e-6
+_RECTANGLE = 1e-6
 """Share of the rectangle round a block that may be missing from it: coordinates are rounded to micrometres."""
 
-Members = list[tuple[float, CaseResults]]
+_Members = list[tuple[float, CaseResults]]
 """Cases of one family, each with its value of the parameter."""
 
 
@@ -61,7 +61,7 @@ def methods_of(run: ComparisonRun) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Parameter:
+class _Parameter:
     """What varies within a family.
 
     Attributes:
@@ -82,14 +82,14 @@ def families(run: ComparisonRun) -> list[StudyCurves]:
     return [study for parameter in _PARAMETERS for study in _families(run, sound, parameter)]
 
 
-def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter) -> Iterator[StudyCurves]:
+def _families(run: ComparisonRun, items: list[CaseResults], parameter: _Parameter) -> Iterator[StudyCurves]:
     """Families over one parameter; those of one kind of wall, which the other parameter tells apart, stand together."""
-    groups: dict[str, Members] = defaultdict(list)
+    groups: dict[str, _Members] = defaultdict(list)
     for item in items:
         value = parameter.value(item.case.assembly)
         if value is not None:
             groups[parameter.key(item.case.assembly)].append((value, item))
-    kinds: dict[str, list[Members]] = defaultdict(list)
+    kinds: dict[str, list[_Members]] = defaultdict(list)
     for members in groups.values():
         if len({value for value, _ in members}) >= _SMALLEST_FAMILY:
             members.sort(key=lambda pair: pair[0])
@@ -100,7 +100,7 @@ def _families(run: ComparisonRun, items: list[CaseResults], parameter: Parameter
             yield _study(drawn, parameter)
 
 
-def _series(members: Members, methods: list[str]) -> list[charts.Series]:
+def _series(members: _Members, methods: list[str]) -> list[charts.Series]:
     series = []
     for method in methods:
         points = [
@@ -125,7 +125,7 @@ def _series(members: Members, methods: list[str]) -> list[charts.Series]:
     return series
 
 
-def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Parameter) -> StudyCurves:
+def _study(drawn: list[tuple[_Members, list[charts.Series]]], parameter: _Parameter) -> StudyCurves:
     first = drawn[0][0]
     found = []
     for members, series in drawn:
@@ -149,7 +149,7 @@ def _study(drawn: list[tuple[Members, list[charts.Series]]], parameter: Paramete
     )
 
 
-def _changes(members: Members) -> str:
+def _changes(members: _Members) -> str:
     """Between which values the set of slipping, rocking and open interfaces changes, of the least state or another."""
     seen: list[tuple[float, str]] = []
     for value, item in members:
@@ -187,7 +187,7 @@ def proportion_of(assembly: Assembly) -> float | None:
     for block in assembly.free:
         polygon = assembly.polygons[block]
         size = polygon.max(axis=0) - polygon.min(axis=0)
-        if polygon_area(polygon) < (1.0 - RECTANGLE) * float(size.prod()):
+        if polygon_area(polygon) < (1.0 - _RECTANGLE) * float(size.prod()):
             return None
         ratios.append(float(size[0] / size[1]))
     counts = Counter(round(ratio, 6) for ratio in ratios)
@@ -214,6 +214,6 @@ def _stretched(assembly: Assembly) -> list[np.ndarray]:
 
 
 _PARAMETERS = (
-    Parameter("friction", "friction tan φ", friction_of, _same_but_friction),
-    Parameter("proportion", "width of a block over its height", proportion_of, _same_but_proportion),
+    _Parameter("friction", "friction tan φ", friction_of, _same_but_friction),
+    _Parameter("proportion", "width of a block over its height", proportion_of, _same_but_proportion),
 )

@@ -8,9 +8,9 @@ from markupsafe import Markup
 
 WITHIN = 0.01
 """Methods whose multipliers lie within a hundredth of the lowest agree, as in the other sentences of the report."""
-STEPS = (0.05, 0.2)
+_STEPS = (0.05, 0.2)
 """Least differences at which the shade changes: readers see three shades apart, not more."""
-WORDS = {
+_WORDS = {
     "agree": "agree within 1 %",
     "open": "brackets do not decide",
     "differ-1": "differ by more than 1 %",
@@ -29,14 +29,14 @@ def shade(least: float, most: float) -> str:
         return "agree"
     if least <= WITHIN:
         return "open"
-    return f"differ-{1 + sum(least > step for step in STEPS)}"
+    return f"differ-{1 + sum(least > step for step in _STEPS)}"
 
 
 def legend(used: set[str]) -> Markup:
     """The shades that a map has, in words."""
     items = Markup("").join(
         Markup('<li><span class="shade {}"></span>{}</li>').format(name, words)
-        for name, words in WORDS.items()
+        for name, words in _WORDS.items()
         if name in used
     )
     return Markup('<ul class="legend">{}</ul>').format(items)

@@ -12,7 +12,7 @@ from reports.charts.charts import Chart, Plot
 from reports.drawing.display_list import Frame
 from reports.labels import numbers
 
-NAMED = ("opens", "slides")
+_NAMED = ("opens", "slides")
 """Changes that are steps; a joint that closes or sticks again is none."""
 
 
@@ -20,7 +20,7 @@ def first_changes(result: Result, assembly: Assembly, shown: int) -> list[Breakp
     """The breakpoints among the first `shown` points of a path where a joint opens, or slides, for the first time."""
     first: dict[tuple[int, str], Breakpoint] = {}
     for found in breakpoints(result.path, assembly.n_interfaces):
-        if found.change in NAMED and found.place < shown:
+        if found.change in _NAMED and found.place < shown:
             first.setdefault((found.joint, found.change), found)
     return list(first.values())
 

@@ -15,7 +15,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from reports.geometry import shapes
 
-SIZE = 4000
+_SIZE = 4000
 _MARGIN = 560
 BELOW = 240
 LETTERS = 150.0
@@ -44,7 +44,7 @@ class Frame:
     @property
     def scale(self) -> float:
         """Drawing units in a length."""
-        return SIZE / self.extent.longest
+        return _SIZE / self.extent.longest
 
     @property
     def block(self) -> float:
@@ -59,7 +59,7 @@ class Frame:
     @property
     def below(self) -> int:
         """Room below the wall: the scales of lengths and forces stand beside each other where it is wide enough."""
-        return BELOW if self.extent.width * self.scale >= 0.55 * SIZE else 2 * BELOW
+        return BELOW if self.extent.width * self.scale >= 0.55 * _SIZE else 2 * BELOW
 
     @property
     def box(self) -> Box:

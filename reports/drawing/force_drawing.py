@@ -32,7 +32,7 @@ from reports.memo import memo
 
 WIDEST, THINNEST = 0.16, 0.02
 """Width of the largest and of the smallest force, in block sizes."""
-LAYERS = ("forces", "thrust")
+_LAYERS = ("forces", "thrust")
 CLEAR = 12.0
 """Least distance of a number from an arrow, in drawing units."""
 _WORTH = 0.05
@@ -40,7 +40,7 @@ _WORTH = 0.05
 
 
 @memo
-def force_drawing(case: Case, result: Result, layers: Collection[str] = LAYERS) -> DisplayList:
+def force_drawing(case: Case, result: Result, layers: Collection[str] = _LAYERS) -> DisplayList:
     """Contact forces (m, 3) of a result with their sizes and scales; a force at the limit of friction is circled.
 
     Args:

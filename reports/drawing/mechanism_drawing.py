@@ -23,8 +23,8 @@ _ROLE = {
     joints.DILATANT: "dilatant",
 }
 _OPENED = (joints.ROCK, joints.BOTH, joints.OPEN)
-HEAVY = (joints.SLIDE, joints.BOTH, joints.DILATANT)
-ELSEWHERE = 0.004
+_HEAVY = (joints.SLIDE, joints.BOTH, joints.DILATANT)
+_ELSEWHERE = 0.004
 """Share of the wall's longer side from which a block of the second mechanism stands elsewhere: half a line's width."""
 
 
@@ -100,7 +100,7 @@ def overlay_drawing(case: Case, first: Result, second: Result) -> DisplayList:
     placed = frame.place_all(places[0])
     for role, members in (("held", assembly.fixed), ("still", ~assembly.fixed & ~moves), ("moves", moves)):
         drawn.parts.append(Polygons(role, chosen(placed, members)))
-    apart = ELSEWHERE * frame.extent.longest
+    apart = _ELSEWHERE * frame.extent.longest
     elsewhere = [b for a, b in zip(*places, strict=True) if float(np.abs(a - b).max()) > apart]
     drawn.parts.append(Polygons("other", tuple(frame.place_all(elsewhere))))
     drawn.parts.extend(_joints_of_one(frame, assembly, (first, second), scales))
@@ -169,7 +169,7 @@ def _marks(
     for p, state in enumerate(joints.joint_states(assembly, result) or []):
         if state == joints.STICK:
             continue
-        line, wide = (ends[p],), size if state in HEAVY else 0.6 * size
+        line, wide = (ends[p],), size if state in _HEAVY else 0.6 * size
         parts: list[Shape] = [Lines(_ROLE[state], line, wide, 0.9 * size if state == joints.OPEN else None)]
         if state == joints.DILATANT:
             parts.append(Lines("core", line, 0.4 * size))

@@ -29,7 +29,7 @@ from reports.memo import memo
 _LABELLED_BLOCKS = 160
 _DOTTED_INTERFACES = 240
 DRAWN_INTERFACES = 4000
-READ = 130.0
+_READ = 130.0
 """Size of ids that are 11 px in half of a page; smaller ones are for files, which can be zoomed."""
 
 
@@ -90,13 +90,13 @@ def _labels(frame: Frame, assembly: Assembly) -> list[Shape]:
     short = all(len(name) <= 5 for name in assembly.block_ids)
     names = assembly.block_ids if short else [str(k + 1) for k in range(assembly.n_blocks)]
     sizes = [_letters(polygon * frame.scale, len(name)) for name, polygon in zip(names, assembly.polygons, strict=True)]
-    read = np.median(sizes) >= READ  # on the page most ids or none, not those of the few blocks that lie level
+    read = np.median(sizes) >= _READ  # on the page most ids or none, not those of the few blocks that lie level
     drawn: list[Shape] = []
     for k, (name, size) in enumerate(zip(names, sizes, strict=True)):
         if size >= 44.0:
             x, y = frame.place(assembly.centroid[k]).tolist()
             below = (0.35 if assembly.fixed[k] else -0.22) * size
-            role = "" if read and size >= READ else "fine"
+            role = "" if read and size >= _READ else "fine"
             drawn.append(Text(role, (x, y + below), name, size, title=f"block {assembly.block_ids[k]}"))
     return drawn
 

@@ -24,7 +24,7 @@ from reports.figures.plot import plot
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 
-FORMATS = (".gif", ".png", ".apng", ".webp")
+_FORMATS = (".gif", ".png", ".apng", ".webp")
 FRAMES = 28
 _FRAME_MILLISECONDS = 60
 _PAUSE_MILLISECONDS = 900
@@ -35,7 +35,7 @@ _GREATEST = 2.0
 
 def check_ending(path: Path) -> None:
     """Refuse a file whose ending says no format of animations; raises InputError."""
-    figures.check_ending(path, FORMATS, "animation")
+    figures.check_ending(path, _FORMATS, "animation")
 
 
 def animate(case: Case, result: Result, path: Path) -> None:

@@ -34,7 +34,7 @@ COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
 _WINDOW_DPI = 220
 KINDS = ("mechanism", "forces", "thrust", "wall", "comparison")
-FORMATS = (".pdf", ".svg", ".png")
+_FORMATS = (".pdf", ".svg", ".png")
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7.0,
@@ -157,7 +157,7 @@ def style() -> Iterator[None]:
         yield
 
 
-def check_ending(path: Path, formats: Sequence[str] = FORMATS, kind: str = "figure") -> None:
+def check_ending(path: Path, formats: Sequence[str] = _FORMATS, kind: str = "figure") -> None:
     """Refuse a file whose ending says no format of its kind.
 
     Raises:
@@ -175,10 +175,10 @@ def save(make: Callable[[], Figure], path: Path) -> None:
     """
     check_ending(path)
     with replacing(path) as draft, style():
-        make().savefig(draft, metadata=metadata(path))
+        make().savefig(draft, metadata=_metadata(path))
 
 
-def metadata(path: Path) -> dict[str, Any]:
+def _metadata(path: Path) -> dict[str, Any]:
     """File information without dates, so that the bytes depend on the input alone."""
     suffix = path.suffix.lower()
     if suffix == ".pdf":

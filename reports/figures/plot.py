@@ -14,7 +14,7 @@ from harness.model.rings import rings_of
 from reports.drawing.display_list import Arrows, Circles, DisplayList, Frame, Lines, Polygons, Shape, Text
 from reports.drawing.looks import COLOURS, LOOKS, Look
 
-HATCH = "/////"
+_HATCH = "/////"
 LEAST, MOST = 0.3, 0.05
 """Least width of a line [pt] that prints; most points of it in a drawing unit, as in a column of a journal."""
 
@@ -92,7 +92,7 @@ class _Pen:
             "edgecolor": COLOURS[look.stroke] if look.stroke else "none",
             "linewidth": self._width(look),
             "linestyle": self._dashes(look.dash, self._width(look)),
-            "hatch": HATCH if look.hatched else None,
+            "hatch": _HATCH if look.hatched else None,
             "alpha": look.opacity if look.opacity < 1.0 else None,
             "zorder": self.depth,
         }

@@ -10,7 +10,7 @@ from harness.model.errors import InputError
 from harness.model.method_registry import load_method
 from reports.figures.figures import PAGE, style
 
-ROUNDING = 1e-12
+_ROUNDING = 1e-12
 """What lies less above the least known state is drawn here."""
 
 
@@ -31,7 +31,7 @@ def profile_figure(profiles: dict[str, tuple[list[float], list[float]]], table: 
                 [1.0, *ratios, most], [0.0, *shares, shares[-1] if shares else 0.0], where="post", **look
             )
             own = table[(table["method"] == method) & table["correct"] & table["above_least"].notna()]
-            height = np.maximum(own["above_least"].to_numpy(dtype=float), ROUNDING)
+            height = np.maximum(own["above_least"].to_numpy(dtype=float), _ROUNDING)
             right.plot(own["cpu_seconds"], height, linestyle="", marker=".", color=line.get_color(), label=method)
         left.set_xscale("log")
         left.set_ylim(0.0, 1.02)

@@ -14,14 +14,14 @@ from reports.drawing.wall_drawing import displaced_drawing
 from reports.figures.figures import COLUMN, PAGE, style
 from reports.figures.plot import plot
 
-BEYOND = 1.5
+_BEYOND = 1.5
 """Multiple of the displacement from which the last reaction is constant, up to which paths are drawn."""
 
-Curve = tuple[str, FloatArray, FloatArray, float | None]
+_Curve = tuple[str, FloatArray, FloatArray, float | None]
 """A name, displacements (k,), reactions (k,), and the displacement from which the reaction is constant."""
 
 
-def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head: str) -> Figure:
+def reaction_figure(curves: Sequence[_Curve], extremes: tuple[float, float], head: str) -> Figure:
     """Reactions against displacements [length] of supports, between the extremes of associated flow.
 
     Args:
@@ -33,7 +33,7 @@ def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head
         page = Figure(figsize=(COLUMN, 0.8 * COLUMN), layout="constrained")
         ax = page.subplots()
         ends = [float(x[-1]) if constant is None else constant for _, x, _, constant in curves]
-        furthest = BEYOND * max(ends) or 1.0
+        furthest = _BEYOND * max(ends) or 1.0
         for (name, displacement, reaction, _), line in zip(curves, ("-", "--"), strict=False):
             drawn = np.append(displacement, max(furthest, float(displacement[-1])))
             ax.plot(drawn, np.append(reaction, reaction[-1]), line, color=COLOURS["ink"], linewidth=0.9, label=name)

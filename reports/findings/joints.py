@@ -11,7 +11,7 @@ from harness.model.result import Result, normalised_mechanism, relative_velociti
 from reports.labels import numbers
 from reports.memo import memo
 
-STILL = 1e-5
+_STILL = 1e-5
 """Relative velocity that counts as none, as in `harness.model.result.contact_states`; the fastest vertex has 1."""
 _STILL_MEASURED = 1e-3
 """The same in a measured velocity field, in which nothing is exactly at rest; as blocks in `shapes.moving`."""
@@ -46,7 +46,7 @@ class JointMotion:
 def _motion(assembly: Assembly, result: Result) -> JointMotion:
     velocities = normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
     opening, slip = relative_velocities(assembly, velocities)
-    still = _STILL_MEASURED if result.flow == "approximate" else STILL
+    still = _STILL_MEASURED if result.flow == "approximate" else _STILL
     associated = result.flow == "associated"
     law = assembly.law.associated if associated else assembly.law
     lifted = law.dilatancy * abs(slip)

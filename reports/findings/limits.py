@@ -7,7 +7,7 @@ from harness.model.method import Status, Traits
 from harness.model.proof import least_known
 from reports.labels import labels
 
-WITHIN = 0.01
+_WITHIN = 0.01
 """A range of less than a hundredth is none worth a sentence."""
 
 _LIMITS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
@@ -95,14 +95,14 @@ def _widest(run: ComparisonRun) -> tuple[str, ...]:
         if least is None or greatest is None:
             continue
         low, high = least.multiplier or 0.0, greatest.multiplier or 0.0
-        if high <= (1.0 + WITHIN) * low:
+        if high <= (1.0 + _WITHIN) * low:
             continue
         for result in item.results:
             if result.status is Status.OK and result.traits.brackets and result.bracket is not None:
                 common = min(result.bracket[1], high) - max(result.bracket[0], low)
                 shares.append((max(0.0, common) / (high - low), item.case.id, result.method))
     share, case, method = max(shares, default=(0.0, "", ""))
-    if share < WITHIN:
+    if share < _WITHIN:
         return ()
     return (
         f"On {case} the bracket of {method} covers {100.0 * share:.0f} % of the range from the least state known to "

@@ -21,7 +21,7 @@ ONE_BODY, APART = 0.01, 0.2
 """Share of a motion that one rigid motion leaves, up to which it is one body's, and up to which it is mainly one's."""
 _TOE = 0.05
 """Block sizes within which the centre of a rotation stands at the end of a joint: numerical fields are that near."""
-THRUST = 0.02
+_THRUST = 0.02
 """Share of the wall's weight by which thrusts through head joints differ worth a clause: the page prints hundredths."""
 _SAME_VALUE = 1e-4
 """Relative difference of multipliers that is not worth a reason: the page prints five digits."""
@@ -116,7 +116,7 @@ def _self_stress(item: CaseResults, least: Result, other: Result) -> str:
     """Thrust through head joints, which equilibrium leaves free, where two states differ in it."""
     assembly = item.case.assembly
     thrusts = [thrust_lines.head_thrust(assembly, result.forces) for result in (least, other)]
-    if thrusts[0] is None or thrusts[1] is None or abs(thrusts[0] - thrusts[1]) < THRUST:
+    if thrusts[0] is None or thrusts[1] is None or abs(thrusts[0] - thrusts[1]) < _THRUST:
         return ""
     said = (
         f" Head joints carry {thrusts[0]:.2f} of the wall’s weight in {least.method} "
@@ -124,7 +124,7 @@ def _self_stress(item: CaseResults, least: Result, other: Result) -> str:
     )
     springs = next((r for r in item.mains if r.traits.elastic and r is not least and r.status is Status.OK), None)
     built = None if springs is None else thrust_lines.head_thrust(assembly, springs.forces)
-    if springs is None or built is None or not other.traits.bounds_above or thrusts[1] - built < THRUST:
+    if springs is None or built is None or not other.traits.bounds_above or thrusts[1] - built < _THRUST:
         return f"{said}."
     return f"{said}, a self-stress that the load path does not produce: {springs.method} ends with {built:.2f}."
 

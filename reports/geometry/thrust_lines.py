@@ -15,14 +15,14 @@ HEAD_JOINT = 0.5
 """An interface whose normal has a horizontal part above this (60 degrees from the vertical or more) is a head joint."""
 
 
-AT_LIMIT = 0.999
+_AT_LIMIT = 0.999
 """Share of the limit of friction from which a force is drawn as at it: forces of any method are known better."""
 
 
 SMALLEST = 2e-3
 """Share of the largest force below which one is not drawn."""
 
-REACH = 0.36
+_REACH = 0.36
 """Half of the length of a resultant that is drawn, in block sizes: two in neighbouring joints do not run into each
 other."""
 
@@ -58,7 +58,7 @@ def drawn_ends(assembly: Assembly, found: Thrusts) -> FloatArray:
     One that a support takes stands on the free block alone and ends at the joint, so that nothing leaves the support.
     """
     way = _towards_ground(found)
-    length = REACH * assembly.length_scale
+    length = _REACH * assembly.length_scale
     a, b = assembly.block_a[found.interface], assembly.block_b[found.interface]
     normal = assembly.normal[found.interface]  # from a to b
     held = assembly.fixed[a] | assembly.fixed[b]
@@ -111,7 +111,7 @@ def friction_used(assembly: Assembly, forces: FloatArray) -> FloatArray:
 
 def at_friction_limit(assembly: Assembly, forces: FloatArray) -> np.ndarray:
     """Which interfaces (m,) carry a shear at the limit of friction: for screen, print and figures alike."""
-    return np.asarray(friction_used(assembly, forces) >= AT_LIMIT)
+    return np.asarray(friction_used(assembly, forces) >= _AT_LIMIT)
 
 
 def round_number(largest: float) -> float:

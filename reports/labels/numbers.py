@@ -6,7 +6,7 @@ import math
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 NOTHING = "–"
-ROUNDING = 1e-12
+_ROUNDING = 1e-12
 """Share of the size of what is added up below which a sum is zero: doubles leave 1e-16 a term."""
 
 
@@ -17,7 +17,7 @@ def plain(value: float, digits: int = 5, size: float = 0.0) -> str:
     """
     if not math.isfinite(value):
         return "not finite"
-    if abs(value) <= ROUNDING * size:
+    if abs(value) <= _ROUNDING * size:
         return "0"
     if not 1e-4 <= abs(value) < 10.0 ** max(digits, 6):
         return power(value, max(1, digits - 2))

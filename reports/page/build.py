@@ -47,7 +47,7 @@ DRAWING_BUDGET, INLINE = 1_500_000, 300_000
 stays below 5 MB: at 65 cases of 60 blocks and 8 methods all else takes 3.1 MB."""
 
 
-SIGNS = (
+_SIGNS = (
     ("filled: proved minimum", dots.sign(Mark("#14202b", "s", "solid"), filled=True)),
     ("reference", dots.sign(dots.REFERENCE)),
 )
@@ -93,7 +93,7 @@ def render(run: ComparisonRun, *, data_folder: str, listed: Sequence[ResultColum
         glance=first,
         summary=summary(run) if first.governs is None else summary(run, first.governs.item, first.governs.unanswered),
         overview=dots.html(overview),
-        overview_signs=dots.legend(overview, SIGNS),
+        overview_signs=dots.legend(overview, _SIGNS),
         findings=tables.findings(run),
         columns=tables.columns(run),
         shown=shown,

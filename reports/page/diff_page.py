@@ -19,7 +19,7 @@ _GLYPH = {"worse": "✗", "gone": "∅", "slower": "…", "better": "✓", "new"
 
 
 @dataclass(frozen=True)
-class DiffRow:
+class _DiffRow:
     """One case and method in both sets, ready to print."""
 
     row: Row
@@ -51,7 +51,7 @@ def write_diff(found: Difference, path: Path) -> None:
 
 def render(found: Difference) -> str:
     """The page as text."""
-    rows = [DiffRow(row) for row in found.rows]
+    rows = [_DiffRow(row) for row in found.rows]
     return (
         environment()
         .get_template("diff.html.j2")

@@ -33,12 +33,12 @@ from reports.labels.wall_summary import value_in_words
 from reports.page import paper
 from reports.page.governing import Governing, governing
 
-PRINTED = Mark("#4a5763", "o", "solid")
+_PRINTED = Mark("#4a5763", "o", "solid")
 """The mark of what the paper prints."""
 
 
 @dataclass(frozen=True)
-class Picture:
+class _Picture:
     """The mechanism of one family.
 
     Attributes:
@@ -57,7 +57,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class GlancePart:
+class _GlancePart:
     """A plot with its heading and the sentence that says what it shows."""
 
     title: str
@@ -66,7 +66,7 @@ class GlancePart:
 
 
 @dataclass(frozen=True)
-class Glance:
+class _Glance:
     """The first screen.
 
     Attributes:
@@ -83,16 +83,16 @@ class Glance:
     headline: str
     number: int | None = None
     case: str = ""
-    pictures: list[Picture] = field(default_factory=list)
+    pictures: list[_Picture] = field(default_factory=list)
     sentence: str = ""
-    parts: list[GlancePart] = field(default_factory=list)
+    parts: list[_GlancePart] = field(default_factory=list)
     governs: Governing | None = None
     drawing: Markup = field(default_factory=Markup)
     words: str = ""
     further: list[tuple[str, str]] = field(default_factory=list)
 
 
-def glance(run: ComparisonRun) -> Glance:
+def glance(run: ComparisonRun) -> _Glance:
     """What a reader sees first: the paper's walls where they were run, otherwise the first wall with a mechanism."""
     built = [(number, item) for number, item in enumerate(run.cases) if not shapes.problem(item.case)]
     said = paper.printed()
@@ -102,7 +102,7 @@ def glance(run: ComparisonRun) -> Glance:
     block = next((item for _, item in built if item.case.id == said.block.case), None)
     own = _own(run, [item for _, item in built])
     if focus is None:
-        return Glance(headline(run), governs=own)
+        return _Glance(headline(run), governs=own)
     number, item = focus if own is None else next(pair for pair in built if pair[1] is own.item)
     parts = [] if block is None else [_block(block)]
     if item.case.id == said.wall.case:
@@ -110,10 +110,10 @@ def glance(run: ComparisonRun) -> Glance:
     elif item is not block:
         plot = wall_plot(item)
         parts.append(
-            GlancePart("Multiplier by method", html(plot), "Filled: proved minimum. A bar is a measured bracket.")
+            _GlancePart("Multiplier by method", html(plot), "Filled: proved minimum. A bar is a measured bracket.")
         )
     drawing, words = _governing_mechanism(own)
-    return Glance(
+    return _Glance(
         headline(run),
         number,
         item.case.id,
@@ -178,14 +178,14 @@ def _own(run: ComparisonRun, items: list[CaseResults]) -> Governing | None:
     return governing(items)
 
 
-def pictures(item: CaseResults) -> list[Picture]:
+def pictures(item: CaseResults) -> list[_Picture]:
     """The mechanisms of the families at one scale: that of the one which allows the least."""
     assembly = item.case.assembly
     drawn = [r for r in mains(item) if r.mechanism is not None and len(r.mechanism) == assembly.n_blocks]
     fields = [np.asarray(result.mechanism, dtype=float) for result in drawn]
     scale = min((shapes.amplitude(assembly, each) for each in fields), default=0.0)
     return [
-        Picture(
+        _Picture(
             title=library().family_title(result.family, result.method),
             method=result.method,
             value=value_in_words(result),
@@ -248,7 +248,7 @@ def _paper_found(item: CaseResults) -> str:
     return f"In the paper {said.mechanisms}." if item.case.id == said.case else ""
 
 
-def _block(item: CaseResults) -> GlancePart:
+def _block(item: CaseResults) -> _GlancePart:
     """The paper's block: what it prints, and ours, on one axis."""
     results = {result.method: result for result in plotted(item) if result.multiplier is not None}
     printed = [row for row in paper.printed().block.rows if row.exact is not None and row.method in results]
@@ -263,7 +263,7 @@ def _block(item: CaseResults) -> GlancePart:
     ends = [end for result in results.values() for end in range_of(result) or ()]
     values = [*ends, *(mark.value for mark in theirs)]
     plot = DotPlot("Multipliers of the single block, the paper's and ours", plain_scale(values), rows)
-    return GlancePart("Single block", html(plot) + legend(plot), _block_in_words(item, list(results.values())))
+    return _GlancePart("Single block", html(plot) + legend(plot), _block_in_words(item, list(results.values())))
 
 
 def _labels_of(dots: list[Dot]) -> str:
@@ -284,7 +284,7 @@ def _block_in_words(item: CaseResults, results: list[Result]) -> str:
     return f"{said}{'; ' + ', '.join(others) if others else ''}: equilibrium does not determine the contact forces."
 
 
-def _cost(run: ComparisonRun, item: CaseResults) -> GlancePart | None:
+def _cost(run: ComparisonRun, item: CaseResults) -> _GlancePart | None:
     """CPU time as ratios beside the paper's, and the largest walls."""
     found = paper.paper_comparison(run)
     if found is None or not found.ratio_ours:
@@ -302,8 +302,8 @@ def _cost(run: ComparisonRun, item: CaseResults) -> GlancePart | None:
         )
         ends = (early, value) if early is not None and early < value else None
         marks = [
-            Dot("paper", printed.minutes, PRINTED, f"{ours.method} {ours.paper_ratio} in the paper"),
-            Dot("Drystone", value, Mark(PRINTED.colour, "s", "solid"), text, ends, filled=True),
+            Dot("paper", printed.minutes, _PRINTED, f"{ours.method} {ours.paper_ratio} in the paper"),
+            Dot("Drystone", value, Mark(_PRINTED.colour, "s", "solid"), text, ends, filled=True),
         ]
         rows.append(
             DotRow(ours.method.upper(), marks, f"{numbers.given(printed.minutes, 3)} → {numbers.plain(value, 2)}")
@@ -314,7 +314,7 @@ def _cost(run: ComparisonRun, item: CaseResults) -> GlancePart | None:
     sentence = (
         f"{found.names} is {found.ratio_paper} in the paper and {found.ratio_ours} here{until}. {largest_walls(run)}"
     )
-    return GlancePart("CPU time, ratio", html(plot) + legend(plot), sentence)
+    return _GlancePart("CPU time, ratio", html(plot) + legend(plot), sentence)
 
 
 def largest_walls(run: ComparisonRun) -> str:

@@ -56,7 +56,7 @@ def block_answers(rear: float, front: float) -> BlockAnswers:
 
 
 @dataclass(frozen=True)
-class LessonPanel:
+class _LessonPanel:
     """One method's answer on one wall, for the page."""
 
     method: str
@@ -66,15 +66,15 @@ class LessonPanel:
 
 
 @dataclass(frozen=True)
-class Step:
+class _Step:
     """One friction of the wall."""
 
     friction: str
-    panels: list[LessonPanel]
+    panels: list[_LessonPanel]
 
 
 @dataclass(frozen=True)
-class Demonstration:
+class _Demonstration:
     """Where the sliders stand when the page opens: the paper's block.
 
     Attributes:
@@ -97,7 +97,7 @@ def write_learn(run: ComparisonRun, path: Path) -> None:
     write_whole(path, render(run))
 
 
-def render(run: ComparisonRun, start: Demonstration = Demonstration()) -> str:
+def render(run: ComparisonRun, start: _Demonstration = _Demonstration()) -> str:
     """The page as text, with its sliders at the start."""
     name = printed().block.case
     block = next(item for item in run.cases if item.case.id == name)
@@ -115,7 +115,7 @@ def render(run: ComparisonRun, start: Demonstration = Demonstration()) -> str:
             measured=[
                 (r.method, r.traits.caption, value_in_words(r)) for r in labels.in_order(block) if r.status is Status.OK
             ],
-            steps=[Step(friction_text(item.case.assembly), _panels(item)) for item in walls],
+            steps=[_Step(friction_text(item.case.assembly), _panels(item)) for item in walls],
             chart=Markup(charts.svg(_chart(walls))),
             style=page_style(),
             hatch=Markup(HATCH),
@@ -128,14 +128,14 @@ def render(run: ComparisonRun, start: Demonstration = Demonstration()) -> str:
     )
 
 
-def _panels(item: CaseResults) -> list[LessonPanel]:
+def _panels(item: CaseResults) -> list[_LessonPanel]:
     panels = []
     for result in labels.in_order(item):
         if result.status is not Status.OK or result.mechanism is None:
             continue
         found = motion(item.case.assembly, result)
         panels.append(
-            LessonPanel(
+            _LessonPanel(
                 result.method,
                 value_in_words(result),
                 inline(mechanism_drawing(item.case, result)),

@@ -15,7 +15,7 @@ from reports.labels import numbers
 from reports.page.tables import Cell, anchor_of
 
 
-class PrintedRow(Strict):
+class _PrintedRow(Strict):
     """One multiplier of the block as the paper prints it, and in closed form."""
 
     method: str
@@ -25,14 +25,14 @@ class PrintedRow(Strict):
     exact: float | None = None
 
 
-class PrintedBlock(Strict):
+class _PrintedBlock(Strict):
     """What the paper says of its block: the case, and a row a method."""
 
     case: str
-    rows: list[PrintedRow]
+    rows: list[_PrintedRow]
 
 
-class PrintedCost(Strict):
+class _PrintedCost(Strict):
     """CPU minutes of a method on the paper's wall, blocks of its largest wall, and the work it asks of the user."""
 
     method: str
@@ -41,37 +41,37 @@ class PrintedCost(Strict):
     work: str
 
 
-class PrintedWall(Strict):
+class _PrintedWall(Strict):
     """What the paper says of its wall; ratios are taken to the first row."""
 
     case: str
     experiment: float
     mechanisms: str
     study: str
-    rows: list[PrintedCost]
+    rows: list[_PrintedCost]
 
 
-class PrintedApplicationRow(Strict):
+class _PrintedApplicationRow(Strict):
     """What the paper's text says that one of its walls carries."""
 
     case: str
     printed: str
 
 
-class PrintedApplication(Strict):
+class _PrintedApplication(Strict):
     """The paper's application: methods to set beside it, and what of the load our cases count as dead."""
 
     dead: float
     methods: list[str]
-    rows: list[PrintedApplicationRow]
+    rows: list[_PrintedApplicationRow]
 
 
-class Printed(Strict):
+class _Printed(Strict):
     """The content of `cases/paper.toml`."""
 
-    block: PrintedBlock
-    wall: PrintedWall
-    application: PrintedApplication
+    block: _PrintedBlock
+    wall: _PrintedWall
+    application: _PrintedApplication
 
     @property
     def cases(self) -> tuple[str, str]:
@@ -80,13 +80,13 @@ class Printed(Strict):
 
 
 @cache
-def printed() -> Printed:
+def printed() -> _Printed:
     """What the paper prints, read once."""
-    return shipped_words(Printed, "paper.toml")
+    return shipped_words(_Printed, "paper.toml")
 
 
 @dataclass(frozen=True)
-class BlockRow:
+class _BlockRow:
     """One multiplier of the paper's single block beside ours."""
 
     what: str
@@ -98,7 +98,7 @@ class BlockRow:
 
 
 @dataclass(frozen=True)
-class CostRow:
+class _CostRow:
     """CPU time of one method as a ratio, beside the paper's; `until_value` [s]: when a search first had its value."""
 
     method: str
@@ -113,11 +113,11 @@ class CostRow:
 
 
 @dataclass(frozen=True)
-class Paper:
+class _Paper:
     """What the report shows of the paper."""
 
-    block: list[BlockRow]
-    cost: list[CostRow]
+    block: list[_BlockRow]
+    cost: list[_CostRow]
     names: str
     ratio_paper: str
     ratio_ours: str
@@ -125,7 +125,7 @@ class Paper:
     experiment: str
     imperfection: str
     applied: list[str]
-    applications: list[ApplicationRow]
+    applications: list[_ApplicationRow]
 
 
 def _find(run: ComparisonRun, case: str) -> tuple[int, CaseResults] | None:
@@ -136,7 +136,7 @@ def _result(item: CaseResults, method: str) -> tuple[int, Result] | None:
     return next(((number, result) for number, result in enumerate(item.results) if result.method == method), None)
 
 
-def paper_comparison(run: ComparisonRun) -> Paper | None:
+def paper_comparison(run: ComparisonRun) -> _Paper | None:
     """The paper's two tables beside ours, or None if neither of its cases was run."""
     said = printed()
     block, wall = _find(run, said.block.case), _find(run, said.wall.case)
@@ -145,7 +145,7 @@ def paper_comparison(run: ComparisonRun) -> Paper | None:
     cost = [] if wall is None else _cost(*wall)
     times = {row.method: row.cpu.sort for row in cost if row.cpu.sort}
     earlier = {row.method: row.until_value for row in cost if row.until_value is not None}
-    return Paper(
+    return _Paper(
         block=[] if block is None else _block(*block),
         cost=cost,
         names=" : ".join(row.method.upper() for row in said.wall.rows),
@@ -168,13 +168,13 @@ def _ratio(times: dict[str, float]) -> str:
     return " : ".join(numbers.plain(times[row.method] * per_second, 2) for row in rows)
 
 
-def _block(number: int, item: CaseResults) -> list[BlockRow]:
+def _block(number: int, item: CaseResults) -> list[_BlockRow]:
     rows = []
     for row in printed().block.rows:
         what, known, form, exact = row.what, row.printed, row.closed_form, row.exact
         found = _result(item, row.method)
         if found is None:
-            rows.append(BlockRow(what, known, form, Cell("not run"), "", ""))
+            rows.append(_BlockRow(what, known, form, Cell("not run"), "", ""))
             continue
         result = found[1]
         if result.traits.brackets and result.bracket is not None:
@@ -187,11 +187,11 @@ def _block(number: int, item: CaseResults) -> list[BlockRow]:
         if exact is not None and result.multiplier is not None:
             gap = abs(result.multiplier - exact)
             difference = "0" if gap == 0.0 else numbers.power(gap)
-        rows.append(BlockRow(what, known, form, cell, anchor_of(number, found[0]), difference))
+        rows.append(_BlockRow(what, known, form, cell, anchor_of(number, found[0]), difference))
     return rows
 
 
-def _cost(number: int, item: CaseResults) -> list[CostRow]:
+def _cost(number: int, item: CaseResults) -> list[_CostRow]:
     paper = {row.method: row for row in printed().wall.rows}
     found = {method: _result(item, method) for method in paper}
     first = next(iter(paper))
@@ -211,7 +211,7 @@ def _cost(number: int, item: CaseResults) -> list[CostRow]:
         )
         cpu = _cpu(entry)
         rows.append(
-            CostRow(
+            _CostRow(
                 method=method,
                 paper_ratio=numbers.plain(paper[method].minutes, 3),
                 ratio=numbers.NOTHING if not cpu or not base else numbers.plain(paper[first].minutes * cpu / base, 3),
@@ -268,7 +268,7 @@ def _to_value(item: CaseResults, method: str) -> float | None:
 
 
 @dataclass(frozen=True)
-class ApplicationRow:
+class _ApplicationRow:
     """What a wall of the paper's application carries: the paper's text, and ours by method."""
 
     number: int
@@ -277,7 +277,7 @@ class ApplicationRow:
     ours: list[Cell]
 
 
-def applications(run: ComparisonRun) -> list[ApplicationRow]:
+def applications(run: ComparisonRun) -> list[_ApplicationRow]:
     """The walls of the paper's application that were run, in its unit: the dead part and the multiplier."""
     said = printed().application
     rows = []
@@ -287,7 +287,7 @@ def applications(run: ComparisonRun) -> list[ApplicationRow]:
             continue
         number, item = found
         ours = [_carried(_result(item, method), said.dead) for method in said.methods]
-        rows.append(ApplicationRow(number, item.case.file.title, row.printed, ours))
+        rows.append(_ApplicationRow(number, item.case.file.title, row.printed, ours))
     return rows
 
 

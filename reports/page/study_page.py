@@ -26,7 +26,7 @@ longer table is folded."""
 MAP_COLUMNS, MAP_ROWS = 16, 40
 """Largest map of where families agree that is seen at a glance."""
 
-READ = {
+_READ = {
     "failure": "Share of walls that collapse at or below a multiplier, with Wilson's score interval at 95 %. A wall "
     "whose wide bracket holds the multiplier counts in `probability_at_most` only.",
     "sensitivity": "Borgonovo's delta: 0 for a quantity without influence, 1 for the only one with influence; and "
@@ -69,7 +69,7 @@ class StudyPage:
 
 
 @dataclass(frozen=True)
-class StudyCharts:
+class _StudyCharts:
     """Charts of one kind, side by side.
 
     Attributes:
@@ -85,7 +85,7 @@ class StudyCharts:
 
 
 @dataclass(frozen=True)
-class AgreementMap:
+class _AgreementMap:
     """Where the families agree: a row a point of the other quantities, a column a value of the axis.
 
     Attributes:
@@ -123,7 +123,7 @@ def render(page: StudyPage) -> str:
             map=_agreement_map(page),
             answer=answer(page.tables),
             found=findings(page.tables, page.grid),
-            tables=[(name, READ[name], *_cells(shown)) for name, shown in _shown(page) if len(shown)],
+            tables=[(name, _READ[name], *_cells(shown)) for name, shown in _shown(page) if len(shown)],
             folded=FOLDED,
         )
     )
@@ -131,13 +131,13 @@ def render(page: StudyPage) -> str:
 
 def _shown(page: StudyPage) -> Iterator[tuple[str, pd.DataFrame]]:
     """The tables of the page, in its order; where families agree is a map of its own."""
-    for name in READ:
+    for name in _READ:
         table = page.tables.get(name)
         if table is not None:
             yield name, table
 
 
-def _agreement_map(page: StudyPage) -> AgreementMap | None:
+def _agreement_map(page: StudyPage) -> _AgreementMap | None:
     """Where families agree; None where it is known of fewer than two walls."""
     table = page.tables.get("agreement")
     if table is None or not len(table):
@@ -154,7 +154,7 @@ def _agreement_map(page: StudyPage) -> AgreementMap | None:
         rows.append((name, [at.get(value) for value in values[:MAP_COLUMNS]]))
     cut = max(0, len(rows) - MAP_ROWS), max(0, len(values) - MAP_COLUMNS)
     left = [numbers.count(number, what) for number, what in zip(cut, ("row", "column"), strict=True) if number]
-    return AgreementMap(
+    return _AgreementMap(
         axis or "",
         [_cell(value) for value in values[:MAP_COLUMNS]],
         rows[:MAP_ROWS],
@@ -203,7 +203,7 @@ _COUNTED = (
 )
 
 
-def _charts(page: StudyPage) -> Iterator[StudyCharts]:
+def _charts(page: StudyPage) -> Iterator[_StudyCharts]:
     """Multipliers over the main axis, then fragility curves."""
     spread = page.tables["quantiles"]
     axis = _main_axis(spread, page.grid)
@@ -213,7 +213,7 @@ def _charts(page: StudyPage) -> Iterator[StudyCharts]:
         if others and (spread["method"].nunique() > 1 or _over_axis(spread, axis, page)[1]):
             parts = list(_groups(spread, others))  # one chart for each of the other quantities' values
         drawn = [(name, *_over_axis(part, axis, page, name)) for name, part in parts[:MOST_CHARTS]]
-        yield StudyCharts(
+        yield _StudyCharts(
             f"Multiplier over {axis}",
             _POINTS,
             [(name, charts.svg(chart)) for name, chart, _ in drawn],
@@ -222,7 +222,7 @@ def _charts(page: StudyPage) -> Iterator[StudyCharts]:
     curves = page.tables.get("fragility")
     if curves is not None and len(curves):
         chart, left = _fragility(curves, page)
-        yield StudyCharts("Fragility", _COUNTED, [("", charts.svg(chart))], _left(left, 0))
+        yield _StudyCharts("Fragility", _COUNTED, [("", charts.svg(chart))], _left(left, 0))
 
 
 def _left(lines: int, whole: int) -> str:

@@ -33,7 +33,7 @@ _JOINTS_OF_ONE = "Joints that slide (red) or open (violet) in one of them only a
 
 
 @dataclass(frozen=True)
-class RedRow:
+class _RedRow:
     """A run, or a statement of theory, that a reader has to know of.
 
     Attributes:
@@ -48,7 +48,7 @@ class RedRow:
 
 
 @dataclass(frozen=True)
-class Summary:
+class _Summary:
     """The sentences of the first screen.
 
     Attributes:
@@ -59,10 +59,10 @@ class Summary:
 
     findings: list[str]
     advice: str
-    red: list[RedRow]
+    red: list[_RedRow]
 
 
-def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: Sequence[str] = ()) -> Summary:
+def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: Sequence[str] = ()) -> _Summary:
     """The sentences of a comparison: of one wall, or of a suite.
 
     Args:
@@ -78,7 +78,7 @@ def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: 
         found.extend(_suite(items))
     elif least_known(governing) is None:
         found.append(wall_findings(governing))
-    return Summary([*found, *missed], advice, _red_rows(run))
+    return _Summary([*found, *missed], advice, _red_rows(run))
 
 
 @memo
@@ -106,12 +106,12 @@ def _rank(item: CaseResults) -> int:
     return 2 if wrong or _apart(item) > AGREE else 3
 
 
-def _red_rows(run: ComparisonRun) -> list[RedRow]:
+def _red_rows(run: ComparisonRun) -> list[_RedRow]:
     """Failed and rejected runs, values that miss a reference, statements of theory that do not hold."""
-    rows: list[RedRow] = []
+    rows: list[_RedRow] = []
     for number, item in enumerate(run.cases):
         rows.extend(
-            RedRow(
+            _RedRow(
                 f"case-{number}",
                 f"{item.case.id}, {'search' if gate.of_search else 'theory'}",
                 f"{gate.statement}: not met ({gate.sentence})",
@@ -122,7 +122,7 @@ def _red_rows(run: ComparisonRun) -> list[RedRow]:
         for index, result in enumerate(item.results):
             what = _wrong(result)
             if what:
-                rows.append(RedRow(anchor_of(number, index), f"{item.case.id}, {result.method}", what))
+                rows.append(_RedRow(anchor_of(number, index), f"{item.case.id}, {result.method}", what))
     return rows
 
 

@@ -24,14 +24,14 @@ LETTERS = 120
 
 LINE = 170
 """From one line of that text to the next."""
-MOST_BLOCKS = 2000
+_MOST_BLOCKS = 2000
 """Walls with more blocks are drawn on demand only (`drystone figure`): a drawing takes some 100 bytes a block."""
 
 
 def drawings(item: CaseResults) -> dict[str, str]:
     """The wall of a case, the mechanism and the forces of each result, and two mechanisms over each other, by name."""
     case = item.case
-    if shapes.problem(case) or case.assembly.n_blocks > MOST_BLOCKS:
+    if shapes.problem(case) or case.assembly.n_blocks > _MOST_BLOCKS:
         return {}
     found = {"wall": headed(case, wall_drawing(case), "")}
     for result in item.results:

@@ -182,9 +182,9 @@ def _of(point: _Point, unit: str) -> str:
 def _reached(points: Sequence[_Point], level: float) -> str:
     """Between which places the mean falls to a level, as far as brackets and standard error say."""
     x = [point.place for point in points]
-    sooner = where(x, [point.means[0] - point.errors[0] for point in points], level)
-    middle = where(x, [0.5 * sum(point.means) for point in points], level)
-    later = where(x, [point.means[1] + point.errors[1] for point in points], level)
+    sooner = _where(x, [point.means[0] - point.errors[0] for point in points], level)
+    middle = _where(x, [0.5 * sum(point.means) for point in points], level)
+    later = _where(x, [point.means[1] + point.errors[1] for point in points], level)
     if sooner is None:
         return f"nowhere up to {x[-1]:g}"
     first = f"{sooner:.2g}"
@@ -195,7 +195,7 @@ def _reached(points: Sequence[_Point], level: float) -> str:
     return f"at about {first}" if first == last else f"between {first} and {last}"
 
 
-def where(x: Sequence[float], y: Sequence[float], level: float) -> float | None:
+def _where(x: Sequence[float], y: Sequence[float], level: float) -> float | None:
     """Where a falling polyline first passes a level, or None."""
     for k in range(len(x) - 1):
         if y[k] > level >= y[k + 1]:

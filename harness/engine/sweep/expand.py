@@ -29,11 +29,11 @@ from harness.model.wall import Wall
 
 _MOST_DRAWN = 10_000_000
 """Values that a study draws: each takes some 100 bytes."""
-MOST_TOLD = 200
+_MOST_TOLD = 200
 """Characters of an error in which a wall of a study is named by its values."""
 
 
-def shown(count: int) -> str:
+def _shown(count: int) -> str:
     """A count in words, rounded where it has more digits than a reader needs."""
     return f"{count:,}" if count < 10**12 else f"more than 10^{len(str(count)) - 1}"
 
@@ -47,7 +47,7 @@ class WallSource:
 
 
 @dataclass(frozen=True, eq=False)
-class WallVariant:
+class _WallVariant:
     """One wall of a study: where it comes from and what was changed.
 
     Attributes:
@@ -62,7 +62,7 @@ class WallVariant:
     values: Mapping[str, Any]
     draw: int | None
     study: str
-    walls: Walls = field(repr=False)
+    walls: _Walls = field(repr=False)
 
     @property
     def id(self) -> str:
@@ -81,7 +81,7 @@ class WallVariant:
         Raises:
             InputError: its data are no wall.
         """
-        changed = ", ".join(f"{name} = {value}" for name, value in self.values.items())[:MOST_TOLD]
+        changed = ", ".join(f"{name} = {value}" for name, value in self.values.items())[:_MOST_TOLD]
         return parse_wall(self.data, f"study {self.study}, {self.id} with {changed}")
 
     @cached_property
@@ -104,14 +104,14 @@ class WallVariant:
         return ()
 
 
-class Walls:
+class _Walls:
     """Assemblies of the walls of a study, the last few kept: runs on one wall follow each other."""
 
     def __init__(self, most: int = 64) -> None:
         self._most = most
-        self._kept: OrderedDict[WallVariant, Assembly] = OrderedDict()
+        self._kept: OrderedDict[_WallVariant, Assembly] = OrderedDict()
 
-    def assembly(self, variant: WallVariant) -> Assembly:
+    def assembly(self, variant: _WallVariant) -> Assembly:
         """The assembly of a variant, see `Variant.assembly`."""
         found = self._kept.get(variant)
         if found is None:
@@ -131,12 +131,12 @@ class SweepRun(Run):
         varied: every quantity that the study varies and that this run depends on, by name.
     """
 
-    case: WallVariant
+    case: _WallVariant
     number: int = field(kw_only=True)
     varied: Mapping[str, Any] = field(kw_only=True)
 
     @property
-    def variant(self) -> WallVariant:
+    def variant(self) -> _WallVariant:
         """The wall."""
         return self.case
 
@@ -168,23 +168,23 @@ def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
     samples = study.samples if study.draw else 1
     count = len(sources) * samples * len(study.methods) * math.prod(study.lengths())  # before any value is made
     if count > MOST_RUNS:
-        raise InputError(f"it expands to {shown(count)} runs", f"A study makes at most {MOST_RUNS:,}", study.name)
+        raise InputError(f"it expands to {_shown(count)} runs", f"A study makes at most {MOST_RUNS:,}", study.name)
     if samples * len(study.draw) > _MOST_DRAWN:
         problem = f"{samples:,} samples of {len(study.draw):,} quantities are drawn"
         raise InputError(problem, f"A study draws at most {_MOST_DRAWN:,} values", study.name)
     axes, draws = list(study.axes()), _draws(study)
     limits = Limits(study.limits.seconds, study.limits.memory * 2**20)
-    runs, walls = list[SweepRun](), Walls()
+    runs, walls = list[SweepRun](), _Walls()
     for source in sources:
         for assignment in itertools.product(*axes):
             grid = {name: value for part in assignment for name, value in part.items()}
             for draw, drawn in draws:
-                runs += _runs(study, WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
+                runs += _runs(study, _WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
     _check(study, runs)
     return runs
 
 
-def _runs(study: Study, wall: WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
+def _runs(study: Study, wall: _WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
     """The runs on one wall. A method whose settings vary is run for each of them, the others once."""
     settings = {name: where for name in values if (where := setting_of(name)) is not None}
     of_wall = {name: value for name, value in values.items() if name not in settings}
@@ -204,7 +204,7 @@ def _check(study: Study, runs: Sequence[SweepRun]) -> None:
         if owner not in study.methods:
             raise InputError(f'"{name}" is a setting of {owner}, which the study does not run', "Name it in methods")
     seen: set[str] = set()
-    looked_at: WallVariant | None = None
+    looked_at: _WallVariant | None = None
     classes = {name: load_method(name).Settings for name in study.methods if _has_settings(study, name, owners)}
     for run in runs:
         if run.method in classes:

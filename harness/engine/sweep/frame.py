@@ -13,7 +13,7 @@ from harness.engine.sweep.running import STUDY, Row, StudyColumn
 from harness.model.table import types
 from harness.model.writing import cell, replacing
 
-UNITS = {
+_UNITS = {
     "friction": "1 (tangent of the angle of friction)",
     "proportion": "1 (block length over height)",
     "inset": "1 (fraction of the interface)",
@@ -42,7 +42,7 @@ def tidy(rows: Iterable[Row], varied: Sequence[str], columns: Sequence[StudyColu
     # Numbers without a value are NaN here, as statistics take them.
     table = table.astype({name: dtype.replace("Float64", "float64") for name, dtype in types(columns).items()})
     declared = {column.name: column.unit for column in columns}
-    table.attrs["units"] = {name: declared.get(name, UNITS.get(name, "as in the wall's file")) for name in names}
+    table.attrs["units"] = {name: declared.get(name, _UNITS.get(name, "as in the wall's file")) for name in names}
     return table
 
 

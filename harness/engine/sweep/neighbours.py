@@ -25,15 +25,15 @@ from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.result import relative_velocities
 
-Make = Callable[[Sequence[SweepRun]], list[Row]]
+_Make = Callable[[Sequence[SweepRun]], list[Row]]
 """Makes runs, or finds them in the store, and gives their rows in any order."""
 
-DECIDED = {str(Finding.FALLS), str(Finding.STANDS)}
+_DECIDED = {str(Finding.FALLS), str(Finding.STANDS)}
 """Findings that no mechanism of another wall can change."""
 
 
 @dataclass(frozen=True)
-class Sharing:
+class _Sharing:
     """How far states are handed on.
 
     Attributes:
@@ -94,7 +94,7 @@ class _Cell:
 
 
 def handed_on(
-    runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make: Make, sharing: Sharing | None = None
+    runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make: _Make, sharing: _Sharing | None = None
 ) -> list[Row]:
     """The rows of a study after each run has taken up what its neighbours found, round after round until none falls.
 
@@ -108,7 +108,7 @@ def handed_on(
     Returns:
         one row a run; where a state was taken over its `multiplier_alone` is what the run found by itself.
     """
-    chosen = sharing or Sharing()
+    chosen = sharing or _Sharing()
     by_number = {int(row["number"]): row for row in rows}
     cells = list(_cells(runs, by_number, chosen.nearest))
     changed = cells
@@ -129,7 +129,7 @@ def _cells(runs: Sequence[SweepRun], rows: dict[int, Row], nearest: int) -> Iter
     groups = defaultdict[Hashable, list[_Cell]](list)
     for run in runs:
         row = rows[run.number]
-        if run.method in follow and row["finding"] not in DECIDED and row["status"] != str(Status.REFUSED):
+        if run.method in follow and row["finding"] not in _DECIDED and row["status"] != str(Status.REFUSED):
             assembly = run.variant.assembly
             settings = json.dumps(dict(run.settings), sort_keys=True)
             groups[(run.method, settings, *_joints(assembly))].append(_Cell(run, row, assembly))

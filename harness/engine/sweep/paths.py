@@ -12,7 +12,7 @@ from typing import Any
 from harness.model.errors import InputError
 from harness.model.library import library
 
-STEP = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)|\[(\d+)\]")
+_STEP = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)|\[(\d+)\]")
 _SETTING = "settings."
 
 
@@ -53,7 +53,7 @@ def with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
 def has_number(data: Mapping[str, Any], name: str) -> bool:
     """Whether data of a wall have a number where a name leads; short names always mean one."""
     here: Any = data
-    for field, index in STEP.findall(name) if name not in _RULES else ():
+    for field, index in _STEP.findall(name) if name not in _RULES else ():
         try:
             here = here[field or int(index)]
         except (KeyError, IndexError, TypeError):
@@ -62,7 +62,7 @@ def has_number(data: Mapping[str, Any], name: str) -> bool:
 
 
 def _put(data: dict[str, Any], path: str, value: Any) -> None:
-    steps = [match.group(1) or int(match.group(2)) for match in STEP.finditer(path)]
+    steps = [match.group(1) or int(match.group(2)) for match in _STEP.finditer(path)]
     if not steps or "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".") != path:
         raise InputError(f'"{path}" is no path', 'Write it as "loads.live.body[0].per_weight"', "vary")
     here: Any = data
@@ -96,7 +96,7 @@ def _number(name: str, value: Any) -> float:
         InputError: it is no number.
     """
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"{json.dumps(value)} is no number", f"Give {NUMBERS[name]}", f"vary.{name}")
+        raise InputError(f"{json.dumps(value)} is no number", f"Give {_NUMBERS[name]}", f"vary.{name}")
     return float(value)
 
 
@@ -136,7 +136,7 @@ def _direction(data: dict[str, Any], value: Any) -> None:
         item["force"] = [c * x - s * y, s * x + c * y]
 
 
-NUMBERS = {
+_NUMBERS = {
     "direction": "degrees counter-clockwise, as 0,180 for a load to the right and to the left",
     "proportion": "block length over height, as 1.5",
 }

@@ -19,9 +19,9 @@ from harness.model.reading import validate
 
 _LIKE_A_RANGE = re.compile(r"\s*(\d*\.?\d+)\s*(?:-|\.\.\.?|–|to)\s*(\d*\.?\d+)\s*")
 """Two numbers with a sign between them that people write for a range."""
-LONGEST = 100
+_LONGEST = 100
 """Characters of a word that a sentence repeats."""
-SIZES = 6
+_SIZES = 6
 """Sizes of defects in a range that does not say how many."""
 
 
@@ -57,10 +57,10 @@ def quick_study(
         if not equals or not values:
             raise InputError(f'"{words}" varies nothing', "Give NAME=FROM:TO:COUNT or NAME=A,B,C", "--vary")
         if name in axes:
-            raise InputError(f'"{name[:LONGEST]}" varies twice', "Give all of its values at once", "--vary")
+            raise InputError(f'"{name[:_LONGEST]}" varies twice', "Give all of its values at once", "--vary")
         axes[name] = axis_of(values, f"--vary {name}", None)
     if imperfection:
-        axes["imperfection"] = axis_of(imperfection, "--imperfection", SIZES)
+        axes["imperfection"] = axis_of(imperfection, "--imperfection", _SIZES)
     if seeds is not None:
         axes["seed"] = {"seeds": seeds}
     return varied(what, axes, methods, settings, limits, multipliers)

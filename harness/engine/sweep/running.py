@@ -44,21 +44,21 @@ def sweep(
 
 
 @dataclass(frozen=True)
-class StudyRow:
+class _StudyRow:
     """What a column of a study is a function of: a run, and its result; None where the wall cannot be built."""
 
     run: SweepRun
     result: Result | None = None
 
 
-StudyColumn = TableColumn[StudyRow]
+StudyColumn = TableColumn[_StudyRow]
 
 
 def _from_result(*names: str) -> tuple[StudyColumn, ...]:
     """Columns of results, for the results of a study."""
 
     def of_result(column: ResultColumn) -> StudyColumn:
-        def value(row: StudyRow) -> Any:
+        def value(row: _StudyRow) -> Any:
             return None if row.result is None else column.value(ResultRow(row.result))
 
         return StudyColumn(column.name, column.dtype, column.unit, column.meaning, value, column.title)
@@ -66,15 +66,15 @@ def _from_result(*names: str) -> tuple[StudyColumn, ...]:
     return tuple(of_result(column) for column in chosen(*names))
 
 
-def _status(row: StudyRow) -> str:
+def _status(row: _StudyRow) -> str:
     return str(Status.REFUSED if row.result is None else row.result.status)
 
 
-def _finding(row: StudyRow) -> str:
+def _finding(row: _StudyRow) -> str:
     return str(Finding.NONE if row.result is None else row.result.finding)
 
 
-def _later(row: StudyRow) -> None:
+def _later(row: _StudyRow) -> None:
     """No value: `handed_on` fills it in."""
 
 
@@ -107,12 +107,12 @@ STUDY: tuple[StudyColumn, ...] = (
 
 def row_of(run: SweepRun, result: Result, columns: Sequence[StudyColumn] = STUDY) -> Row:
     """The row of a result, as JSON values."""
-    return _varied(run) | values(columns, StudyRow(run, result))
+    return _varied(run) | values(columns, _StudyRow(run, result))
 
 
 def refused_row(run: SweepRun, sentence: str, columns: Sequence[StudyColumn] = STUDY) -> Row:
     """The row of a wall that cannot be built; nothing is stored of it."""
-    return _varied(run) | values(columns, StudyRow(run)) | {"sentence": sentence}
+    return _varied(run) | values(columns, _StudyRow(run)) | {"sentence": sentence}
 
 
 def _varied(run: SweepRun) -> Row:

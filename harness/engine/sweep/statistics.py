@@ -16,7 +16,7 @@ from harness.model.assembly import FloatArray
 from harness.model.method import Finding, Status
 from harness.model.ranges import differences
 
-SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CONFIDENCE = 0.95
 FEWEST = 5
 """Walls of a group from which a fragility curve is drawn."""
@@ -57,7 +57,7 @@ def quantiles(table: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
     found = pd.DataFrame({"answered": groups.size(), "mean": values.mean(), "deviation": values.std(ddof=1)})
     found.insert(1, "brackets", found["answered"] - values.count())
     found["mean_low"], found["mean_high"] = groups["earliest"].mean(), groups["latest"].mean()
-    for share in SHARES:
+    for share in _SHARES:
         for end, column in (("low", "earliest"), ("high", "latest")):
             found[f"q{100 * share:02.0f}_{end}"] = groups[column].quantile(share)
     asked = table.groupby(list(by), dropna=False).size().rename("runs")

@@ -14,7 +14,7 @@ from harness.model.method import Settings, Traits
 
 Feature = Literal["dilatancy", "strength"]
 NAME = r"[a-z0-9][a-z0-9._-]{0,59}"
-KINDS: dict[str, type] = {"number": float, "integer": int, "boolean": bool, "string": str}
+_KINDS: dict[str, type] = {"number": float, "integer": int, "boolean": bool, "string": str}
 """Types of settings by their names in JSON Schema."""
 
 
@@ -83,7 +83,7 @@ class Description(About):
                 raise ValueError(f'"{name}" is no name of a setting: give letters, digits and underscores')
             if hasattr(Settings, name):
                 raise ValueError(f'"{name}" is no name of a setting: pydantic has it for itself')
-            if not isinstance(schema.default, KINDS[schema.type]) and schema.type != "number":
+            if not isinstance(schema.default, _KINDS[schema.type]) and schema.type != "number":
                 raise ValueError(f'the default of the setting "{name}" is no {schema.type}')
         return self
 
@@ -96,7 +96,7 @@ def settings_class(name: str, schemas: dict[str, SettingSchema]) -> type[Setting
     """
     fields: dict[str, Any] = {}
     for setting, schema in schemas.items():
-        kind: Any = Literal[schema.enum] if schema.enum else KINDS[schema.type]
+        kind: Any = Literal[schema.enum] if schema.enum else _KINDS[schema.type]
         bounds = {"ge": schema.minimum, "le": schema.maximum}
         limits: dict[str, Any] = {key: value for key, value in bounds.items() if value is not None and not schema.enum}
         fields[setting] = (kind, Field(schema.default, description=schema.description, validate_default=True, **limits))

@@ -28,8 +28,8 @@ from harness.model.writing import write_whole
 _METHODS_FILE = "methods.toml"
 VARIABLE = "DRYSTONE_METHODS"
 """Environment variable with the path of a file of methods, in place of that of the working folder."""
-MOST_BYTES = 1_000_000
-PLACES = ("{wall}", "{result}", "{arrays}", "{settings}", "{seconds}")
+_MOST_BYTES = 1_000_000
+_PLACES = ("{wall}", "{result}", "{arrays}", "{settings}", "{seconds}")
 """What stands in a command for the files and the time limit of a run."""
 
 
@@ -38,7 +38,7 @@ class Program(BaseModel):
 
     Attributes:
         name: of the method.
-        command: program and arguments, passed as they are and never through a shell; `PLACES` are filled in.
+        command: program and arguments, passed as they are and never through a shell; `_PLACES` are filled in.
         lines: one process answers many walls, a line of JSON each.
         arrays: with `lines`: requests name a file with the arrays of the wall.
         describe: the program prints what it is (`describe/1`) when it is given `--describe`.
@@ -64,7 +64,7 @@ class Program(BaseModel):
 
     @model_validator(mode="after")
     def _places_that_fit(self) -> Program:
-        used = {place for place in PLACES for word in self.command if place in word}
+        used = {place for place in _PLACES for word in self.command if place in word}
         if self.lines and used:
             raise ValueError(f"a program that answers by lines is given no {', '.join(sorted(used))}")
         if not self.lines and not {"{wall}", "{result}"} <= used:
@@ -76,7 +76,7 @@ class Program(BaseModel):
     @property
     def bare(self) -> list[str]:
         """The command without the words that hold places: what `--describe` is added to."""
-        return [word for word in self.command if not any(place in word for place in PLACES)]
+        return [word for word in self.command if not any(place in word for place in _PLACES)]
 
     @property
     def version(self) -> str:
@@ -126,7 +126,7 @@ def programs() -> dict[str, Program]:
 @functools.lru_cache(maxsize=8)
 def _read(path: Path, _changed: int, _size: int) -> dict[str, Program]:
     """The programs of a file in one state of it."""
-    entries = validate(_File, read_toml(path, MOST_BYTES), str(path)).methods
+    entries = validate(_File, read_toml(path, _MOST_BYTES), str(path)).methods
     for name in sorted({point.name for point in method_points()} & set(entries)):
         raise InputError("an installed method has this name", "Take another name", f"methods.{name}", str(path))
     return {name: program_of(name, entry, path.parent, str(path)) for name, entry in entries.items()}
@@ -189,7 +189,7 @@ def add_entry(path: Path, name: str, entry: dict[str, Any]) -> Program:
     program = program_of(name, entry, path.parent, str(path))
     if any(point.name == name for point in method_points()):
         raise InputError("an installed method has this name", "Take another name", name)
-    text = read_text(path, MOST_BYTES) if path.exists() else ""
+    text = read_text(path, _MOST_BYTES) if path.exists() else ""
     if text and name in _read(path, path.stat().st_mtime_ns, path.stat().st_size):
         raise InputError("the file has a method of this name", "Take another name, or edit the file", name, str(path))
     head = f'[methods."{name}"]' if "." in name else f"[methods.{name}]"

@@ -28,7 +28,7 @@ from methods.de.engines.strips import StripShape, build_strips
 
 
 @dataclass(frozen=True)
-class Box2dTuning:
+class _Box2dTuning:
     """Strips in Box2D.
 
     Attributes:
@@ -101,7 +101,7 @@ class Box2dJoints:
         joints: IntArray,
         sub_steps: int,
         tuning: MassScaling,
-        options: Box2dTuning = Box2dTuning(),
+        options: _Box2dTuning = _Box2dTuning(),
     ) -> None:
         self._box2d, self._options, self._sub_steps = load_box2d(), options, sub_steps
         self.assembly = assembly

@@ -11,7 +11,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 SAME = 1e-6
 """Distance, in length scales, at which points count as the same."""
 
-SHORTEST = 1e-3
+_SHORTEST = 1e-3
 """Length, in length scales, that two edges must share to touch at all."""
 
 
@@ -80,8 +80,8 @@ class FacingEdges:
         starts = np.stack([np.zeros(len(a)), _dot(b[:, 0] - a[:, 0], along)])
         ends = np.stack([_dot(a[:, 1] - a[:, 0], along), _dot(b[:, 1] - a[:, 0], along)])
         low, high = starts.max(axis=0), ends.min(axis=0)
-        apart = high - low < SHORTEST * wall.length_scale
-        high = np.where(apart, low + SHORTEST * wall.length_scale, high)
+        apart = high - low < _SHORTEST * wall.length_scale
+        high = np.where(apart, low + _SHORTEST * wall.length_scale, high)
         points, openings = [], []
         for s in (low, high):
             on_a, on_b = (

@@ -23,7 +23,7 @@ from methods.de.engines.strips import CannotModel, StripShape, build_strips
 
 
 @dataclass(frozen=True)
-class StripTuning:
+class _StripTuning:
     """Strips in pymunk.
 
     Attributes:
@@ -66,7 +66,7 @@ class PymunkJoints:
         joints: IntArray,
         iterations: int,
         tuning: MassScaling,
-        options: StripTuning = StripTuning(),
+        options: _StripTuning = _StripTuning(),
         shape: StripShape = StripShape(),
     ) -> None:
         if assembly.is_bar.any():

@@ -27,7 +27,7 @@ from methods.de.engines.edges import SAME, edge_of
 from methods.numerics.compiled import compiled
 from methods.numerics.joint_loops import shear_within
 
-SLIPS = 1e-2
+_SLIPS = 1e-2
 """Share of the friction that a contact may lack to count as one that slips: blocks swing back as they come to rest."""
 
 
@@ -247,7 +247,7 @@ class SoftWall:
         """Numbers of contacts that slip, and of contacts that bear nothing."""
         now, contacts = self.state(), self.contacts
         pressed = (now.force * now.normal).sum(axis=1)
-        slips = (pressed > 0.0) & (abs(self.shear) >= (1.0 - SLIPS) * contacts.friction * pressed)
+        slips = (pressed > 0.0) & (abs(self.shear) >= (1.0 - _SLIPS) * contacts.friction * pressed)
         return int(np.count_nonzero(slips)), int(np.count_nonzero(pressed <= 0.0))
 
     def save(self) -> tuple[FloatArray, FloatArray]:

@@ -13,7 +13,7 @@ from methods.de.engines.engine import Engine, MeasuredState, motion_units
 from methods.de.holds.motion import HeldMotion, MotionProof, StaticLimit, Trend, by_power, by_virtual_work
 from methods.de.settings import HoldSettings
 
-SMALL = 0.01
+_SMALL = 0.01
 """Live load, as a part of the dead load, below which residuals are given as shares of it: .0001 and .002 in `de`."""
 
 
@@ -186,7 +186,7 @@ def reported_residuals(engine: MeasuredState, settings: HoldSettings) -> tuple[f
     live = abs(engine.multiplier) / engine.assembly.load_unit
     if live == 0.0:
         return settings.held_residual, 2.0 * settings.held_residual
-    share, least = min(1.0, live / SMALL), least_motion(settings)
+    share, least = min(1.0, live / _SMALL), least_motion(settings)
     return max(share * settings.held_residual, 0.5 * least), max(share * settings.moving_residual, least)
 
 

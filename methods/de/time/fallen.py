@@ -8,13 +8,13 @@ import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray, polygon_area
 
-TURNED = np.pi / 3.0
+_TURNED = np.pi / 3.0
 """A block that has turned so far has tipped over: one that rocks turns back from less than atan(b / h)."""
-DROPPED = 0.5
+_DROPPED = 0.5
 """A block has dropped off its seat whose centroid is so much of its size, the square root of its area, too low."""
-SLOW = 1e-3
+_SLOW = 1e-3
 """Speed of a wall at rest [sqrt(size x gravity)]: a fall over a millionth of the size makes more."""
-STILL = 1e-4
+_STILL = 1e-4
 """Displacement within `patience` of a wall at rest, in sizes of a block."""
 
 
@@ -26,7 +26,7 @@ def fallen_blocks(assembly: Assembly, places: FloatArray) -> BoolArray:
         places: (n, 3) displacements of the centroids [length] and rotations [rad].
     """
     sizes = np.sqrt([polygon_area(polygon) for polygon in assembly.polygons])
-    return np.asarray((abs(places[:, 2]) > TURNED) | (-places[:, 1] > DROPPED * sizes))
+    return np.asarray((abs(places[:, 2]) > _TURNED) | (-places[:, 1] > _DROPPED * sizes))
 
 
 def below_supports(assembly: Assembly, places: FloatArray) -> BoolArray:
@@ -60,10 +60,10 @@ class Stillness:
 
     def lasts(self, places: FloatArray, speed: float) -> bool:
         """Take notice of a state: places (n, 3), and largest speed of a block [sqrt(size x gravity)]."""
-        if not speed < SLOW:
+        if not speed < _SLOW:
             self._states.clear()
             return False
         self._states.append(places * [1.0, 1.0, self._size])
         if len(self._states) < (self._states.maxlen or 0):
             return False
-        return bool(np.ptp(np.array(self._states), axis=0).max(initial=0.0) < STILL * self._size)
+        return bool(np.ptp(np.array(self._states), axis=0).max(initial=0.0) < _STILL * self._size)

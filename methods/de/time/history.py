@@ -23,7 +23,7 @@ from methods.de.time.fallen import Stillness, below_supports, fallen_blocks, pat
 
 
 @dataclass(frozen=True, eq=False)
-class TimeHistory:
+class _TimeHistory:
     """A motion that was followed. k states.
 
     Attributes:
@@ -74,9 +74,9 @@ def count_steps(assembly: Assembly, motion: GroundMotion, gravity: float, steps:
     return Count(step, moving, after, int(np.ceil((moving + after) / frames)))
 
 
-SETTLING = 2000
+_SETTLING = 2000
 """Steps in which contacts are loaded at most: an arch of 13 voussoirs takes 300."""
-BALANCED = 1e-6
+_BALANCED = 1e-6
 """Out-of-balance acceleration of a wall whose contacts are loaded, as a part of gravity."""
 
 
@@ -87,16 +87,16 @@ def _load_contacts(space: PymunkBlocks, steps: TimeSteps) -> bool:
     """
     as_drawn = np.zeros((space.assembly.n_blocks, 3))
     space.load(0.0)
-    for _ in range(SETTLING):
+    for _ in range(_SETTLING):
         space.advance(1)
         speed = space.speed()
         space.put(as_drawn)
-        if speed < BALANCED * steps.time_step:
+        if speed < _BALANCED * steps.time_step:
             return True
     return False
 
 
-def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> TimeHistory:
+def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> _TimeHistory:
     """Follow a wall from rest until it has fallen, all motion has died, or the time is over.
 
     It has fallen when a block lies below all supports. Once the ground does no more work it has also fallen when a
@@ -147,7 +147,7 @@ def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: Time
                 finding = Finding.FALLS
             elif at_rest:
                 finding = Finding.STANDS
-    return TimeHistory(
+    return _TimeHistory(
         finding,
         np.array(times),
         np.array(places),

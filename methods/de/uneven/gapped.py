@@ -52,7 +52,7 @@ class GappedTuning:
 
 
 @dataclass(frozen=True, eq=False)
-class GappedRest:
+class _GappedRest:
     """A rest of the wall.
 
     Attributes:
@@ -102,7 +102,7 @@ class GappedWall:
         structure, openings = self._edges.at(places)
         self._shift = np.where(openings < options.closed * options.radius * assembly.length_scale, -openings, 0.0)
         none = np.zeros(2 * assembly.n_interfaces)
-        self.rest = GappedRest(places, places, structure, none, none)
+        self.rest = _GappedRest(places, places, structure, none, none)
 
     @property
     def drift(self) -> float:
@@ -122,7 +122,7 @@ class GappedWall:
             size = float(np.abs(step / units).max(initial=0.0))
             if found.found:
                 pressed, shear = model.forces(found.u, found.history, found.state)
-                rest = GappedRest(places, places + step, structure, pressed, shear)
+                rest = _GappedRest(places, places + step, structure, pressed, shear)
             elif np.isfinite(size):
                 rest, step = None, step * min(1.0, options.stride / max(size, options.still))
             places = places + step

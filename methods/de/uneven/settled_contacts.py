@@ -43,7 +43,7 @@ class SettlingTuning:
 
 
 @dataclass(frozen=True, eq=False)
-class Settled:
+class _Settled:
     """An uneven wall at rest under its dead load.
 
     Attributes:
@@ -61,7 +61,7 @@ class Settled:
     single_points: int
 
 
-def block_height(assembly: Assembly) -> float:
+def _block_height(assembly: Assembly) -> float:
     """Median height of the free blocks [length]: the unit of the size of a defect."""
     heights = [float(np.ptp(assembly.polygons[i][:, 1])) for i in assembly.free]
     return float(np.median(heights))
@@ -74,7 +74,7 @@ def uneven_blocks(assembly: Assembly, size: float, faces: Faces = "both", seed: 
     stay as they are.
     """
     generator = np.random.default_rng(seed)
-    depth = size * block_height(assembly)
+    depth = size * _block_height(assembly)
     which = np.array([faces in ("heads", "both"), faces in ("beds", "both")])
     outlines = []
     for i, polygon in enumerate(assembly.polygons):
@@ -91,7 +91,7 @@ def settle_uneven(
     seed: int = 0,
     most_steps: int = 20_000,
     options: SettlingTuning = SettlingTuning(),
-) -> Settled:
+) -> _Settled:
     """Let the wall of uneven blocks come to rest under its dead load and take its contacts.
 
     Args:
@@ -106,7 +106,7 @@ def settle_uneven(
     space = PymunkBlocks(assembly, outlines, options.damping)
     before, at_rest = _come_to_rest(space, most_steps, np.inf, options)
     settled, single = with_contacts(assembly, space, before, options)
-    return Settled(settled, at_rest, outlines, before, single)
+    return _Settled(settled, at_rest, outlines, before, single)
 
 
 def _come_to_rest(

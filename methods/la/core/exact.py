@@ -39,7 +39,7 @@ def close_tight(problem: Problem, tight: BoolArray | None = None) -> BoolArray:
     return closed
 
 
-def snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
+def _snap(problem: Problem, forces: FloatArray, tight: BoolArray) -> FloatArray:
     """Forces (m, 3) with the tight slacks exactly zero and no slack negative."""
     law = problem.law
     normal = np.where(tight[:, :2], law.least_normal, np.maximum(forces[:, :2], law.least_normal))
@@ -75,7 +75,7 @@ def exact_forces(
     tight = close_tight(problem, tight)
     best: tuple[float, FloatArray, float] | None = None
     for _ in range(2):
-        current = snap(problem, forces, tight)
+        current = _snap(problem, forces, tight)
         slack = problem.slacks(current)
         least = floor * max(float(slack.max(initial=0.0)), 1e-9)
         weight = np.where(tight, RIGID, 1.0 / np.maximum(slack, least) ** 2)
@@ -94,7 +94,7 @@ def exact_forces(
             if not float(abs(velocity).max(initial=0.0)) < _DIVERGED:
                 break
             shift = -compliance.forces(problem.strains(velocity))
-            current, multiplier = snap(problem, current + shift, tight), multiplier + change
+            current, multiplier = _snap(problem, current + shift, tight), multiplier + change
         forces = current
     assert best is not None
     return best[1], best[2]

@@ -24,7 +24,7 @@ _NO_FRICTION = 1e-12
 _NO_MULTIPLIER = 1e-15
 """Scaled multipliers up to this are zero to rounding, as of a wall without friction."""
 
-UNLOADED = 0.05
+_UNLOADED = 0.05
 """Share of the largest normal force on both its blocks below which a joint counts as unloaded."""
 
 
@@ -91,7 +91,7 @@ class Problem:
         for blocks in (assembly.block_a, assembly.block_b):
             np.maximum.at(largest, blocks, normal)
         largest[assembly.fixed] = np.inf
-        return np.asarray(normal < UNLOADED * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))
+        return np.asarray(normal < _UNLOADED * np.minimum(largest[assembly.block_a], largest[assembly.block_b]))
 
     @cached_property
     def live_work(self) -> float:

@@ -13,7 +13,7 @@ from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.numerics.failures import NumericalFailure
 
-MOVING = 1e-11
+_MOVING = 1e-11
 """Rates below this, relative to the largest, are rounding."""
 
 _TIGHT = 1e-8
@@ -97,7 +97,7 @@ def _share(value: FloatArray, of: FloatArray, least: float) -> FloatArray:
 
 def moving_contacts(rates: FloatArray) -> BoolArray:
     """(m, 4) rates that are more than rounding."""
-    return rates > MOVING * float(rates.max(initial=0.0))
+    return rates > _MOVING * float(rates.max(initial=0.0))
 
 
 def tight_contacts(problem: Problem, forces: FloatArray) -> BoolArray:

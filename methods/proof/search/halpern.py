@@ -19,7 +19,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.proof.search.dual import DualBound, dual_bound
 from methods.proof.search.relaxation import Relaxation
 
-Products = npt.NDArray[np.floating[Any]]
+_Products = npt.NDArray[np.floating[Any]]
 """(a, c) products of a relaxation in the precision of a sweep."""
 
 
@@ -71,10 +71,10 @@ class Splitting:
                 iterates.restart()
             before = residual
 
-    def _iterates(self) -> Iterates:
-        return Iterates(self.relaxation, self.cost, self.iterate, np.float32 if self.single else np.float64)
+    def _iterates(self) -> _Iterates:
+        return _Iterates(self.relaxation, self.cost, self.iterate, np.float32 if self.single else np.float64)
 
-    def _balance(self, iterates: Iterates, bound: DualBound, primal: float) -> None:
+    def _balance(self, iterates: _Iterates, bound: DualBound, primal: float) -> None:
         """Change the step by what the bound loses to the dual over the distance of primal and dual cost, and by how far
         the primal part moved since the last check over how far the dual part did.
 
@@ -98,7 +98,7 @@ class Splitting:
             self.step = step
 
 
-class Iterates:
+class _Iterates:
     """The arrays of the splitting in one precision, changed in place: large new ones cost as much as the arithmetic.
 
     Attributes:
@@ -111,8 +111,8 @@ class Iterates:
         self._rows, self._columns = relaxation.row_basis.astype(kind), relaxation.column_basis.astype(kind)
         self._lower, self._upper = relaxation.lower.astype(kind), relaxation.upper.astype(kind)
         self._where = np.nonzero(cost)
-        self._slope: Products = cost[self._where].astype(kind)
-        self.iterate: Products = iterate.astype(kind) if iterate.size else np.zeros(cost.shape, dtype=kind)
+        self._slope: _Products = cost[self._where].astype(kind)
+        self.iterate: _Products = iterate.astype(kind) if iterate.size else np.zeros(cost.shape, dtype=kind)
         self._anchor, self._projected, self._gap = (self.iterate.copy() for _ in range(3))
         self._half = np.empty((len(self._rows), self._columns.shape[1]), dtype=kind)
         self._inner = np.empty((self._rows.shape[1], self._columns.shape[1]), dtype=kind)

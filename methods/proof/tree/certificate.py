@@ -23,12 +23,12 @@ from methods.proof.verify.checker import verify
 from methods.proof.verify.document import FORMAT, digest
 from methods.proof.verify.exact_wall import CertificateError
 
-SHORT = 1e-13
+_SHORT = 1e-13
 """Difference of a short fraction from the float that stands for it, relative to what it belongs to: a hundredth of
 what a certificate may differ by from its wall."""
 
 
-BELOW = Fraction(2, 10**6)
+_BELOW = Fraction(2, 10**6)
 """Relative distance of the certified bound below the state: twice what the tree closes to."""
 
 
@@ -48,7 +48,7 @@ def tree_certificate(
         document = wall_document(assembly, unit)
         wall = Fractions(document)
         upper, state = exact_state(wall, moving.ravel())
-        bound = upper * (1 - BELOW)
+        bound = upper * (1 - _BELOW)
         proved = []
         for tight, still in leaves:
             if time.process_time() > end:
@@ -67,7 +67,7 @@ def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
     place = {int(block): k for k, block in enumerate(assembly.free)}
 
     def text(values: FloatArray, sizes: FloatArray) -> list[str]:
-        return [str(exact(*pair)) for pair in zip(values.tolist(), np.broadcast_to(sizes, values.shape), strict=True)]
+        return [str(_exact(*pair)) for pair in zip(values.tolist(), np.broadcast_to(sizes, values.shape), strict=True)]
 
     size = block_sizes(assembly)
     blocks = [
@@ -90,13 +90,13 @@ def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
                 "b": place.get(int(assembly.block_b[p])),
                 "ends": text(np.concatenate([assembly.end1[p], assembly.end2[p]]), length[p]),
                 "side": side,
-                "friction": str(exact(float(assembly.friction[p]), float(assembly.friction[p]))),
+                "friction": str(_exact(float(assembly.friction[p]), float(assembly.friction[p]))),
             }
         )
     return {"format": FORMAT, "wall": assembly.name, "blocks": blocks, "interfaces": interfaces}
 
 
-def exact(value: float, size: float) -> Fraction:
+def _exact(value: float, size: float) -> Fraction:
     """The short fraction that a float was written as, or the binary fraction that it is.
 
     Args:
@@ -104,7 +104,7 @@ def exact(value: float, size: float) -> Fraction:
         size: what it is small against where it is rounding: of the block, its load, or the length of the interface.
     """
     short = Fraction(value).limit_denominator(DENOMINATOR)
-    return short if same_number(short, value, size, SHORT) else Fraction(value)
+    return short if same_number(short, value, size, _SHORT) else Fraction(value)
 
 
 class Fractions:
@@ -138,7 +138,7 @@ Limits = tuple[Fraction | None, Fraction | None]
 ZERO, ONE = Fraction(0), Fraction(1)
 
 
-EQUAL: Limits = (ZERO, ZERO)
+_EQUAL: Limits = (ZERO, ZERO)
 
 
 _POSITIVE: Limits = (ZERO, None)
@@ -160,14 +160,14 @@ def exact_state(wall: Fractions, moving: BoolArray) -> tuple[Fraction, dict[str,
     for p, mu in enumerate(wall.friction):
         a, b, s = 3 * p, 3 * p + 1, 3 * p + 2
         slacks: list[Row] = [{a: ONE}, {b: ONE}, {a: mu, b: mu, s: ONE}, {a: mu, b: mu, s: -ONE}]
-        rows += [(slack, EQUAL if moving[4 * p + k] else _POSITIVE) for k, slack in enumerate(slacks)]
+        rows += [(slack, _EQUAL if moving[4 * p + k] else _POSITIVE) for k, slack in enumerate(slacks)]
     forces = _vertex(rows, 3 * m + 1, {3 * m: ONE})
     rows = [(_sparse(wall.live), (ONE, ONE))]
     for p in range(m):
         open1, open2, slip = wall.rows[3 * p : 3 * p + 3]
-        rows += [(row, _POSITIVE if moving[4 * p + k] else EQUAL) for k, row in enumerate((open1, open2))]
+        rows += [(row, _POSITIVE if moving[4 * p + k] else _EQUAL) for k, row in enumerate((open1, open2))]
         forward, back = moving[4 * p + 2], moving[4 * p + 3]
-        rows.append((slip, _POSITIVE if forward and not back else _NEGATIVE if back and not forward else EQUAL))
+        rows.append((slip, _POSITIVE if forward and not back else _NEGATIVE if back and not forward else _EQUAL))
     velocities = _vertex(rows, len(wall.dead), {})
     return forces[3 * m], {"forces": _text(forces[: 3 * m]), "velocities": _text(velocities)}
 
@@ -199,7 +199,7 @@ def _velocities(wall: Fractions, bound: Fraction, tight: BoolArray) -> list[Frac
 def _forces(wall: Fractions, bound: Fraction, still: BoolArray) -> list[Fraction]:
     m = len(wall.friction)
     dead = [d + bound * f for d, f in zip(wall.dead, wall.live, strict=True)]
-    rows = [(row, EQUAL) for row in _balance(wall, {3 * m: dead, 3 * m + 1: wall.live})]
+    rows = [(row, _EQUAL) for row in _balance(wall, {3 * m: dead, 3 * m + 1: wall.live})]
     rows += [({3 * m: ONE}, _POSITIVE), ({3 * m + 1: ONE}, _POSITIVE), ({3 * m: ONE, 3 * m + 1: ONE}, (ONE, ONE))]
     for p in range(m):
         for k, (column, sign) in enumerate(((0, ONE), (1, ONE), (2, ONE), (2, -ONE))):

@@ -22,7 +22,7 @@ MOST_DIGITS = 1000
 """Digits of a numerator or denominator. Certificates of the library have 137 at most."""
 MOST_BITS = 20_000
 """Bits of a common denominator, so that no sum of fractions grows beyond. Certificates of the library have 2,813."""
-NUMBER = re.compile(rf"-?[0-9]{{1,{MOST_DIGITS}}}(/0*[1-9][0-9]{{0,{MOST_DIGITS - 1}}})?", re.ASCII)
+_NUMBER = re.compile(rf"-?[0-9]{{1,{MOST_DIGITS}}}(/0*[1-9][0-9]{{0,{MOST_DIGITS - 1}}})?", re.ASCII)
 
 
 class CertificateError(ValueError):
@@ -46,7 +46,7 @@ def number(value: Any) -> Fraction:
     """
     if type(value) is int:
         return Fraction(whole(value))
-    if not isinstance(value, str) or not NUMBER.fullmatch(value):
+    if not isinstance(value, str) or not _NUMBER.fullmatch(value):
         raise CertificateError(f"{repr(value)[:40]} is not a fraction of at most {MOST_DIGITS} digits")
     return Fraction(value)
 

@@ -28,7 +28,7 @@ from methods.springs.model.wall_model import WallModel
 
 
 @dataclass
-class UnitResponse:
+class _UnitResponse:
     """The displacements value + tail (N,) that a unit force at a pin causes in the wall with pins."""
 
     border: int
@@ -54,7 +54,7 @@ class PathDirection:
         self.opening_rate, self.trial_rate = np.empty(model.n_points), np.empty(model.n_points)
         self.bordered: list[int] = []
         self.response = self.velocity
-        self.unit_responses: list[UnitResponse] = []
+        self.unit_responses: list[_UnitResponse] = []
         self.fine = False
         self.elastic = 0.0
         self.live_size = largest(model.live)
@@ -193,15 +193,15 @@ class PathDirection:
         """x (N,) and m with K x - m live = right: m = 0, or x = 0 at the first pin."""
         return self._hold(self.factor.solve(right))
 
-    def _unit_response(self, border: int, state: IntArray) -> UnitResponse:
+    def _unit_response(self, border: int, state: IntArray) -> _UnitResponse:
         """The displacements that a unit force at a pin causes."""
         one = np.zeros(self.model.n_unknowns)
         one[border] = 1.0
-        shape = UnitResponse(border, self.factor.solve(one), np.zeros_like(one))
+        shape = _UnitResponse(border, self.factor.solve(one), np.zeros_like(one))
         self._refine(shape, state, 2)
         return shape
 
-    def _refine(self, shape: UnitResponse, state: IntArray, rounds: int) -> None:
+    def _refine(self, shape: _UnitResponse, state: IntArray, rounds: int) -> None:
         """Refine a shape, whose pin's spring carries all but a tiny share of the force, to twice working precision."""
         for _ in range(rounds):
             self.rates(shape.value, shape.tail)
