@@ -111,47 +111,6 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
     )
 
 
-def beside(assembly: Assembly, share: float) -> Assembly:
-    """With an independent block beside it, on a fixed block of its own: `share` of the wall's weight, pressed down.
-
-    The block bears any live load, which on it is its own weight, so no multiplier may change.
-    """
-    size = assembly.length_scale
-    points = np.vstack(assembly.polygons)
-    place = points.max(axis=0) + 3.0 * size
-    square = size * np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
-    n = assembly.n_blocks
-    weight = share * assembly.force_scale
-    down = np.array([0.0, -weight, 0.0])
-    ends = place + size * np.array([[-0.5, -0.5], [0.5, -0.5]])
-    live = down if assembly.has_live_load else np.zeros(3)
-    return replace(
-        assembly,
-        block_ids=(*assembly.block_ids, "beside", "beside base"),
-        polygons=(*assembly.polygons, place + square, place + square - [0.0, size]),
-        centroid=np.vstack([assembly.centroid, place, place - [0.0, size]]),
-        weight=np.append(assembly.weight, [weight, 0.0]),
-        fixed=np.append(assembly.fixed, [False, True]),
-        dead=np.vstack([assembly.dead, down, np.zeros(3)]),
-        live=np.vstack([assembly.live, live, np.zeros(3)]),
-        support_motion=np.vstack([assembly.support_motion, np.zeros((2, 3))]),
-        block_a=np.append(assembly.block_a, n + 1),
-        block_b=np.append(assembly.block_b, n),
-        end1=np.vstack([assembly.end1, ends[:1]]),
-        end2=np.vstack([assembly.end2, ends[1:]]),
-        face1=np.vstack([assembly.face1, ends[:1]]),
-        face2=np.vstack([assembly.face2, ends[1:]]),
-        normal=np.vstack([assembly.normal, [[0.0, 1.0]]]),
-        friction=np.append(assembly.friction, 0.5),
-        dilatancy=np.append(assembly.dilatancy, 0.0),
-        constant=np.vstack([assembly.constant, np.zeros(4)]),
-        crushing=np.append(assembly.crushing, np.inf),
-        bar_stiffness=np.append(assembly.bar_stiffness, 0.0),
-        brittle=np.append(assembly.brittle, False),
-        joint=(*assembly.joint, "bed"),
-    )
-
-
 VIEWS: dict[str, Callable[[Assembly], Assembly]] = {
     "mirrored": mirrored,
     "translated": _translated,

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from markupsafe import Markup
 
+from harness.model.assembly import Assembly
+from harness.model.breakpoints import Breakpoint, breakpoints
 from harness.model.comparison import CaseResults
 from harness.model.details import AnswerDetails
 from harness.model.displaced import carried, released
 from harness.model.result import Result
-from reports.charts import charts, steps
+from reports.charts import charts
 from reports.charts.styles import mark_of
+from reports.drawing.display_list import Frame
 from reports.drawing.svg import inline
 from reports.drawing.wall_drawing import displaced_drawing
 from reports.labels import labels, numbers
@@ -24,6 +28,8 @@ SAME = 1e-9
 _LEVEL = 0.01
 """Part of the greatest load by which a plateau may rise or fall: a hundredth is not seen in a chart."""
 _LENGTHS = ("live_displacement", "displacement")
+_STEPS = ("opens", "slides")
+"""Changes that are steps; a joint that closes or sticks again is none."""
 
 
 @memo
@@ -68,7 +74,7 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
         moved, loads = [0.0, *moved], [0.0, *loads]
     shown, wall = _until_plateau(moved, loads), item.case.assembly
     added = len(loads) - len(result.path["multiplier"])
-    changes = steps.first_changes(result, wall, shown - added)
+    changes = first_changes(result, wall, shown - added)
     chart = charts.Chart(
         title=f"Multiplier against live displacement, {result.method}",
         x_label=f"displacement of the live load [{item.case.wall.units.length}]",
@@ -81,8 +87,39 @@ def _load_displacement(item: CaseResults, result: Result, moved: list[float], lo
     caption = f"{result.method}: the multiplier along the path over the work-conjugate displacement of the live load"
     if shown < len(loads):
         caption += "; the plateau continues beyond the right edge"
-    more = Markup(" {}").format(steps.listed(chart, changes, wall)) if changes else ""
+    more = Markup(" {}").format(_listed(chart, changes, wall)) if changes else ""
     return Markup("{}.{}").format(caption, more), charts.svg(chart)
+
+
+def first_changes(result: Result, assembly: Assembly, shown: int) -> list[Breakpoint]:
+    """The breakpoints among the first `shown` points of a path where a joint opens, or slides, for the first time."""
+    first: dict[tuple[int, str], Breakpoint] = {}
+    for found in breakpoints(result.path, assembly.n_interfaces):
+        if found.change in _STEPS and found.place < shown:
+            first.setdefault((found.joint, found.change), found)
+    return list(first.values())
+
+
+def _listed(chart: charts.Chart, steps: list[Breakpoint], assembly: Assembly) -> Markup:
+    """The steps as a list, each with its place in the chart and the line of its joint in the drawing of the wall.
+
+    Args:
+        chart: with a dot for every step.
+        steps: in the order of the dots.
+        assembly: the wall.
+    """
+    ends = Frame.of(assembly).place(np.stack([assembly.end1, assembly.end2], axis=1))
+    names = assembly.block_ids
+    items = Markup("")
+    for step, (x, y), (_, multiplier) in zip(steps, charts.Plot.of(chart).dots(chart), chart.dots, strict=True):
+        a, b = names[assembly.block_a[step.joint]], names[assembly.block_b[step.joint]]
+        line = " ".join(f"{value:.0f}" for value in ends[step.joint].ravel().tolist())
+        items += Markup('<li data-at="{:.1f} {:.1f}" data-line="M{}">{}: {} | {} {}</li>').format(
+            x, y, line, numbers.given(multiplier, 3), a, b, step.change
+        )
+    spot = Markup('<svg class="wall spot" aria-hidden="true"><use/><path class="lit" d=""/></svg>')
+    text = "Dots: joints that first open or slide (arrow keys)."
+    return Markup('{}{}<ol class="steps">{}</ol>').format(spot, text, items)
 
 
 def _until_plateau(moved: list[float], loads: list[float]) -> int:

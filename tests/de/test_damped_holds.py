@@ -11,14 +11,13 @@ import pytest
 
 from harness.engine.judge import answered
 from harness.engine.plan import find_cases
-from harness.engine.symmetry import beside
 from harness.model.build import build
 from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall
 from harness.model.wall import Wall
 from tests.de.answers import run, unbalanced, unyielding
-from tests.walls import assembly, running_bond, stack
+from tests.walls import assembly, beside, running_bond, stack
 
 DATA = Path(__file__).parents[1] / "data" / "walls"
 

@@ -16,7 +16,7 @@ import pytest
 import drystone
 from drystone.reactions import reactions
 from harness.engine.judge import answered
-from harness.engine.symmetry import VIEWS, beside
+from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.errors import InputError
@@ -24,7 +24,7 @@ from harness.model.method import Finding
 from harness.model.method_registry import load_method
 from harness.model.result import Result, plastic_and_residual_of
 from harness.model.wall import Wall
-from tests.walls import assembly, running_bond, stack
+from tests.walls import assembly, beside, running_bond, stack
 
 ROUND_OFF = 1e-9
 BOND = {"type": "running_bond", "block_length": 1.0, "block_height": 0.5, "count": 6, "bricks": 3}

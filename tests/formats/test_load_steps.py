@@ -13,7 +13,6 @@ import pytest
 from click.testing import CliRunner
 
 from drystone.cli.main import main
-from harness.engine.symmetry import beside
 from harness.formats.registry import BY_SUFFIX
 from harness.model.assembly import Assembly
 from harness.model.build import build
@@ -24,7 +23,7 @@ from harness.model.reading import parse_wall
 from harness.model.result import Result, result_of
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.path.path_record import PathRecord, PathStep
-from tests.walls import running_bond, wall_data
+from tests.walls import beside, running_bond, wall_data
 
 STEPS = 12
 WALL = parse_wall(wall_data(running_bond(6, 3)), "bricks")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harness.engine.symmetry import VIEWS, beside
+from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.components import components_of
@@ -25,7 +25,7 @@ from methods.la.core.programmes import StaticProgramme, StaticSolution
 from methods.la.core.reaction import ExtremeReaction, extreme_reaction
 from methods.la.interior.associated import solve_associated, solve_with_cvxpy
 from tests.bonded_walls import ASSOCIATED, BOND, PRINTED
-from tests.walls import assembly, stack, wall_data
+from tests.walls import assembly, beside, stack, wall_data
 
 EXACT = 1e-9
 """Relative accuracy of a multiplier of the associated programme, as its method declares."""

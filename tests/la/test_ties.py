@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 
 from harness.engine.judge import answered, judge
 from harness.engine.reaction_judge import judge_reaction
-from harness.engine.symmetry import VIEWS, beside
+from harness.engine.symmetry import VIEWS
 from harness.model.assembly import Assembly
 from harness.model.bars import Bars
 from harness.model.build import build
@@ -25,7 +25,7 @@ from harness.model.result import Judgement, Result
 from harness.model.wall import Wall
 from methods.la.core.problem import make_problem
 from methods.la.core.reaction import ExtremeReaction, extreme_reaction
-from tests.walls import assembly
+from tests.walls import assembly, beside
 
 TAKEN = ("la", "la-associated", "la-associated-cvxpy")
 EXACT = 1e-9

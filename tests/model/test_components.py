@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from harness.engine.judge import answered
-from harness.engine.symmetry import beside, renumbered
+from harness.engine.symmetry import renumbered
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.components import analysed_apart, components_of, joined, joints_of
@@ -17,7 +17,7 @@ from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, OutOfTime, Status
 from harness.model.method_registry import load_method
 from harness.model.wall import Wall
-from tests.walls import assembly, stack
+from tests.walls import assembly, beside, stack
 
 METHODS = ("la", "la-associated", "fe")
 SHARES = (1e-12, 1e-6, 1e6, 1e12)

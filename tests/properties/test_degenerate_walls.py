@@ -9,13 +9,14 @@ import pytest
 
 from benchmarks.walls import drawn
 from harness.engine.judge import answered
-from harness.engine.symmetry import beside, renumbered
+from harness.engine.symmetry import renumbered
 from harness.model.assembly import Assembly
 from harness.model.method import Status
 from harness.model.method_registry import load_method
 from tests.exact_programme import greatest_multiplier
 from tests.properties.degenerate_kinds import KINDS, Rng, any_base, wall
 from tests.properties.degenerate_walls import METHODS, Tally, made, violations
+from tests.walls import beside
 
 LOST = 0.1
 """Share of walls of weight ratios up to 1e12 that may go without an answer."""

@@ -9,8 +9,7 @@ import pytest
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
-from reports.charts.curves import curves
-from reports.charts.steps import first_changes
+from reports.charts.curves import curves, first_changes
 from reports.drawing.display_list import Frame
 from reports.page.build import page_style
 from tests.reports import samples
