@@ -44,15 +44,14 @@ class _SoftHoldTuning:
         low: courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses.
         patience: multiple of the length of a hold that the dead load has.
         away: multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls.
-        share: of a small multiplier to which its bracket is narrowed.
-        beyond: first relative rise above an undecided multiplier; it doubles until the wall falls.
+        share: of a small multiplier to which its bracket is narrowed, and of an undecided one the first rise above it,
+            which doubles until the wall falls.
     """
 
     low: int = 7
     patience: int = 10
     away: float = 300.0
     share: float = 2e-3
-    beyond: float = 2e-3
 
 
 @dataclass(eq=False)
@@ -267,7 +266,7 @@ def _better(answer: Answer, again: Answer) -> Answer:
 
 def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
     """The lowest multiplier tried above an undecided one at which the wall falls; None up to the cap."""
-    rise = holds.options.beyond * multiplier
+    rise = holds.options.share * multiplier
     while multiplier + rise <= cap:
         if holds.hold(multiplier + rise) is State.MOVING:
             return multiplier + rise

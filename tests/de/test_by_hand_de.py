@@ -189,5 +189,5 @@ def test_the_fall_above_a_multiplier_is_sought_by_rises_that_double():
     wall = assembly(stack(1, 0.4, 0.2), 0.5)
     holds = Holds(SoftWall(wall, 1e4, 0.5, 1e-3), SoftSettings())
     assert holds.rests(0.0)
-    assert _fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * holds.options.beyond * 0.45)
+    assert _fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * holds.options.share * 0.45)
     assert _fall_above(holds, 0.45, 0.48) is None

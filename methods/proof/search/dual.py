@@ -43,7 +43,7 @@ def dual_bound(relaxation: Relaxation, iterate: FloatArray, step: float, cost: F
     matrix = _repaired(relaxation, (relaxation.project(iterate) - iterate) / step)
     left = float(abs(relaxation.row_basis.T @ matrix @ relaxation.column_basis).max())
     reduced = cost - matrix
-    if left > relaxation.options.rounding.unused * max(1.0, float(abs(reduced).max())):
+    if left > relaxation.options.rounding.tolerance * max(1.0, float(abs(reduced).max())):
         return None
     f, columns = len(relaxation.free), relaxation.lift_column + 1
     value = float(reduced[relaxation.unit_row, relaxation.work_column] * relaxation.unit)

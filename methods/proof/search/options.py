@@ -96,20 +96,18 @@ class Rounding:
 
     Attributes:
         repairs: of a dual matrix; the second takes what the first left to rounding.
-        unused: what is left in A Z B', relative to the largest multiplier, beyond which a dual matrix proves nothing.
-        no_row: norm below which an inequality vanishes on its whole space.
-        margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times its
-            tolerances.
+        tolerance: of linear programmes, and so what is zero beside them: the norm of an inequality that vanishes on its
+            whole space, what is left in A Z B' (relative to the largest multiplier) of a dual matrix that proves
+            something, and the error of a programme's value, in load units.
+        margin: added to both sides of a bound from a linear programme, in mean block weights: a thousand times the
+            tolerance.
         halvings: of the range of a normal force, to where it is divided.
-        programme: what the value of a programme may be wrong by, in load units: its tolerance.
     """
 
     repairs: int = 2
-    unused: float = 1e-9
-    no_row: float = 1e-9
+    tolerance: float = 1e-9
     margin: float = 1e-6
     halvings: int = 40
-    programme: float = 1e-9
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ class RateProgramme:
                 proofs.append(self._proof("tight", dual, int(contact)))
                 continue
             status, greatest, dual = self._least(-cost)
-            if status == "optimal" and -greatest < rounding.no_row:
+            if status == "optimal" and -greatest < rounding.tolerance:
                 held.add(int(contact))
                 proofs.append(self._proof("slow", dual, int(contact)))
         return replace(case, tight=frozenset(tight), still=frozenset(held)), proofs

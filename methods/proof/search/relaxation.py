@@ -66,7 +66,7 @@ class Relaxation:
         self.unit_row, self.multiplier_row, self.n_rows = 4 * m, 4 * m + 1, 4 * m + 3 + len(self.limits)
         self.work_column, self.lift_column = len(self.free), len(self.free) + 1
         self.rows, self.columns = self._static_rows(), self._kinematic_columns()
-        self.row_scale, self.column_scale = (_scales(part, self._no_row) for part in (self.rows, self.columns))
+        self.row_scale, self.column_scale = (_scales(part, self._tolerance) for part in (self.rows, self.columns))
         self.row_basis, self.row_factor = np.linalg.qr(self.rows * self.row_scale[:, None])
         self.column_basis, self.column_factor = np.linalg.qr(self.columns * self.column_scale[:, None])
         self.unit = float(self.row_scale[self.unit_row] * self.column_scale[self.work_column])
@@ -122,8 +122,8 @@ class Relaxation:
         return lower, upper
 
     @property
-    def _no_row(self) -> float:
-        return self.options.rounding.no_row
+    def _tolerance(self) -> float:
+        return self.options.rounding.tolerance
 
     @cached_property
     def row_inverse(self) -> FloatArray:
@@ -133,12 +133,12 @@ class Relaxation:
     @cached_property
     def column_inverse(self) -> FloatArray:
         """Pseudo-inverse of the part of the basis of B of rates, work and lift."""
-        return np.linalg.pinv(self.column_basis[: self.lift_column + 1], rcond=self._no_row)
+        return np.linalg.pinv(self.column_basis[: self.lift_column + 1], rcond=self._tolerance)
 
     @cached_property
     def alone(self) -> FloatArray:
         """Directions of the basis of B in which signed slips move alone."""
-        return scipy.linalg.null_space(self.column_basis[: self.lift_column + 1], rcond=self._no_row)
+        return scipy.linalg.null_space(self.column_basis[: self.lift_column + 1], rcond=self._tolerance)
 
     @cached_property
     def own(self) -> tuple[IntArray, IntArray]:
@@ -151,7 +151,7 @@ class Relaxation:
         """What of `own` has a part in `alone` by least change."""
         rows, columns = self.own
         image = np.einsum("ka,ke->aek", self.row_basis[rows], self.column_basis[columns] @ self.alone)
-        return np.linalg.pinv(image.reshape(-1, len(rows)), rcond=self._no_row)
+        return np.linalg.pinv(image.reshape(-1, len(rows)), rcond=self._tolerance)
 
     def project(self, products: FloatArray) -> FloatArray:
         """The nearest matrix of the form A Z B'."""
@@ -174,6 +174,6 @@ class Relaxation:
         return cost
 
 
-def _scales(matrix: FloatArray, no_row: float) -> FloatArray:
+def _scales(matrix: FloatArray, tolerance: float) -> FloatArray:
     norms = np.linalg.norm(matrix, axis=1)
-    return np.where(norms < no_row, 1.0, 1.0 / np.maximum(norms, no_row))
+    return np.where(norms < tolerance, 1.0, 1.0 / np.maximum(norms, tolerance))

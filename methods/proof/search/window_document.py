@@ -200,10 +200,10 @@ class WindowDocument:
         bounded = np.setdiff1d(np.arange(3 * m), signed)
         _, triangle, order = scipy.linalg.qr(self.strains[bounded].T, pivoting=True, mode="economic")
         diagonal = abs(np.diag(triangle))
-        rank = int((diagonal > self._rounding.no_row * diagonal[0]).sum())
+        rank = int((diagonal > self._rounding.tolerance * diagonal[0]).sum())
         chosen, courses = bounded[order[:rank]], []
         if rank < n:
-            courses = self._courses(scipy.linalg.null_space(self.strains[bounded], rcond=self._rounding.no_row))
+            courses = self._courses(scipy.linalg.null_space(self.strains[bounded], rcond=self._rounding.tolerance))
             chosen = np.append(chosen, [3 * course["joints"][0] + 2 for course in courses]).astype(int)
         inverse = np.linalg.inv(self.strains[chosen])
         exponent = self._precision.motions
@@ -221,7 +221,7 @@ class WindowDocument:
         groups: list[tuple[FloatArray, list[int], list[float]]] = []
         for p, slip in zip(unloadable.tolist(), slips, strict=True):
             size = float(np.linalg.norm(slip))
-            if size < self._rounding.no_row or self.friction[p] <= 0.0:
+            if size < self._rounding.tolerance or self.friction[p] <= 0.0:
                 continue
             along = slip / size
             alike = (g for g in groups if min(abs(g[0] - along).max(), abs(g[0] + along).max()) < self._rounding.margin)
@@ -288,7 +288,7 @@ class WindowDocument:
     def _alone(self) -> FloatArray:
         """Directions of motions in which nothing but signed slips moves."""
         rates, _, still = self._kinematic
-        return scipy.linalg.null_space(np.vstack([rates, still]), rcond=self._rounding.no_row)
+        return scipy.linalg.null_space(np.vstack([rates, still]), rcond=self._rounding.tolerance)
 
     def _products(self, products: FloatArray, exponent: int, of_size: bool) -> dict[str, Any]:
         """Multipliers of products, rounded, with the multiples of equations that leave next to nothing of the rest."""

@@ -232,7 +232,7 @@ class WindowSearch:
 
     def _raise(self, least: float, certified: float | None) -> None:
         """Raise the bound to what a programme found, and no more than exact arithmetic leaves of it."""
-        found, least = self.found, least - self._options.rounding.programme
+        found, least = self.found, least - self._options.rounding.tolerance
         found.lower = max(found.lower, min(found.upper, least if certified is None else min(least, certified)))
 
     def _bound_size(self) -> None:

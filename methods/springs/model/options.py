@@ -193,9 +193,8 @@ class RefinementTolerances:
 
     Attributes:
         defect: share of the live load above which a velocity is refined, and the tangent factorised afresh when that no
-            longer helps.
-        soft_defect: the same on pieces with pins, as forces over a motion as long as the displacements; soft_accepted:
-            when refinement no longer helps, above which the tangent is factorised afresh.
+            longer helps. On pieces with pins it is of the forces over a motion as long as the displacements.
+        soft_accepted: the same on pieces with pins when refinement no longer helps.
         contraction: share of the defect before it that a step must leave at most, or refinement no longer helps.
         steps: at most.
         doubled: displacements (dimensionless) above which gap rates of pieces with pins are measured in doubled
@@ -203,7 +202,6 @@ class RefinementTolerances:
     """
 
     defect: float = 1e-7
-    soft_defect: float = 1e-7
     soft_accepted: float = 1e-4
     contraction: float = 0.5
     steps: int = 8

@@ -258,7 +258,7 @@ class PathDirection:
         self.fine = bool(self.unit_responses) or (bool(self.bordered) and extent > by.doubled)
         self.measure()
         if self.bordered:
-            enough, bearable = by.soft_defect / extent, (by.soft_defect if strict else by.soft_accepted) / extent
+            enough, bearable = by.defect / extent, (by.defect if strict else by.soft_accepted) / extent
         else:
             enough = bearable = by.defect * self.live_size * abs(self.speed)
         previous = np.inf
