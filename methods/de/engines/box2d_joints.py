@@ -25,6 +25,7 @@ from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import StripShape, build_strips
+from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
@@ -252,7 +253,7 @@ class Box2dJoints:
         p = p.astype(np.int64)
         between_free = ~(wall.fixed[wall.block_a] & wall.fixed[wall.block_b])
         if float(distance.max(initial=0.0)) > 4.0 * self._overlap or len(np.unique(p)) != between_free.sum():
-            raise ArithmeticError(f"Box2D draws {len(np.unique(p))} of {between_free.sum()} interfaces")
+            raise NumericalFailure(f"Box2D draws {len(np.unique(p))} of {between_free.sum()} interfaces")
         impulse = (lines[:, :, 2:] - lines[:, :, :2]) * (self._force / self._impulse)
         across = np.einsum("ckj,cj->ck", impulse[:, ::2], wall.normal[p]) / (2.0 * self._sub_steps)
         along = np.einsum("ckj,cj->c", impulse[:, 1::2], wall.tangent[p])

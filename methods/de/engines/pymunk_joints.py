@@ -20,6 +20,7 @@ from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
 from methods.de.engines.strips import CannotModel, StripShape, build_strips
+from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ class PymunkJoints:
         self._space.gravity = (0.0, 0.0)
         self._space.damping = tuning.damping ** (1.0 / self._options.time_step)
         if not self._space.damping > 0.0:
-            raise ArithmeticError("the damping of the pymunk space underflows to zero")
+            raise NumericalFailure("the damping of the pymunk space underflows to zero")
         self._space.collision_slop = self._options.slop * self._shape.rounding
         self._ground = self._space.static_body
         self._mass = np.zeros((assembly.n_blocks, 3))
@@ -207,7 +208,7 @@ class PymunkJoints:
         once only, because what is raised inside a call back from the engine, as by the alarm of a time limit, is lost.
 
         Raises:
-            ArithmeticError: the engine lost a contact, which frozen geometry forbids.
+            NumericalFailure: the engine lost a contact, which frozen geometry forbids.
         """
         found: dict[int, Any] = {}
 
@@ -218,10 +219,10 @@ class PymunkJoints:
         for body in self._bodies.values():
             body.each_arbiter(note, None)
         if len(found) != self._loaded_interfaces:
-            raise ArithmeticError(f"pymunk sees {len(found)} of {self._loaded_interfaces} interfaces")
+            raise NumericalFailure(f"pymunk sees {len(found)} of {self._loaded_interfaces} interfaces")
         for p, record in found.items():
             if record.count != 2:
-                raise ArithmeticError(f"pymunk sees {record.count} of 2 contact points of interface {p}")
+                raise NumericalFailure(f"pymunk sees {record.count} of 2 contact points of interface {p}")
         return [(p, self._first_contact_is_end_one(p, record), record) for p, record in found.items()]
 
     @property

@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
+from methods.numerics.failures import NumericalFailure
 from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.vertex import BASIC
 from methods.proof.same_wall import block_sizes, interface_lengths, load_sizes, same_number
@@ -238,7 +239,7 @@ def _vertex(rows: list[tuple[Row, Limits]], count: int, cost: Row) -> list[Fract
     programme = Programme(matrix, weights, (np.full(count, -INFINITY), np.full(count, INFINITY)), (lower, upper))
     status, point, _ = programme.run()
     if status != "optimal":
-        raise ArithmeticError(f"the programme is {status}")
+        raise NumericalFailure(f"the programme is {status}")
     basis = programme.highs.getBasis()
     fixed = {k for k, state in enumerate(basis.col_status) if int(state) != BASIC}
     equations: list[Row] = []
