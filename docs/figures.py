@@ -229,13 +229,20 @@ def readme_figures(folder: Path) -> None:
     Image.open(io.BytesIO(picture)).quantize(128).save(folder / "first-screen.png", pnginfo=about, optimize=True)
 
 
-def first_screen(browser: Browser) -> tuple[str, bytes]:
-    """The first screen of the report on the paper's block and wall: its words without those of CPU time, and a PNG."""
+def first_screen(browser: Browser, store: Path | None = None) -> tuple[str, bytes]:
+    """The first screen of the report on the paper's block and wall: its words without those of CPU time, and a PNG.
+
+    Args:
+        browser: in which it is seen.
+        store: where answers are kept, and looked for first; None: nowhere.
+    """
     import drystone
 
     walls = [drystone.library_wall(name) for name in ("single-block", "wall-21")]
     with TemporaryDirectory() as folder:
-        path = drystone.compare(walls, ["fe", "la", "la-associated", "de"]).report(Path(folder) / "report.html")
+        path = drystone.compare(walls, ["fe", "la", "la-associated", "de"], store=store).report(
+            Path(folder) / "report.html"
+        )
         page = browser.new_page(viewport={"width": 1280, "height": 900})
         page.goto(path.as_uri())
         page.locator("nav, .head p").evaluate_all("all => all.forEach((one) => one.remove())")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.test_report_in_browser import DESKTOP, PHONE, UNDER_MENU, WIDE, Opened
+from tests.browser.opened import DESKTOP, PHONE, UNDER_MENU, WIDE, Opened, Pages
 
 pytestmark = pytest.mark.browser
 SMALLEST = 10.9
@@ -60,10 +60,8 @@ AREAS = """all => all.map((path) => {
 
 
 @pytest.mark.parametrize("size", [DESKTOP, WIDE], ids=["desktop", "wide"])
-def test_first_screen_holds_the_three_mechanisms_at_one_scale_beside_the_papers_values(
-    browser: Browser, report: Path, size: Any
-):
-    opened = Opened(browser, report, size)
+def test_first_screen_holds_the_three_mechanisms_at_one_scale_beside_the_papers_values(untouched: Pages, size: Any):
+    opened = untouched(size)
     pictures = opened.page.locator(".trio svg.wall")
     boxes = [box for k in range(pictures.count()) if (box := pictures.nth(k).bounding_box())]
     assert len(boxes) == 3
@@ -76,41 +74,29 @@ def test_first_screen_holds_the_three_mechanisms_at_one_scale_beside_the_papers_
         opened.page.locator(".glance .dots").nth(k).evaluate("e => e.getBoundingClientRect().bottom") <= size["height"]
         for k in range(2)
     )
-    opened.context.close()
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE, WIDE], ids=["desktop", "phone", "wide"])
-def test_letters_are_large_enough_to_read(browser: Browser, report: Path, size: Any):
-    opened = Opened(browser, report, size)
-    opened.see_everything()
-    found = opened.page.evaluate(SEEN)
-    opened.context.close()
+def test_letters_are_large_enough_to_read(seen: Pages, size: Any):
+    found = seen(size).page.evaluate(SEEN)
     assert len(found) > 200
     assert [entry for entry in found if entry[0] < SMALLEST] == []
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
-def test_labels_cover_neither_each_other_nor_the_edge(browser: Browser, report: Path, size: Any):
-    opened = Opened(browser, report, size)
-    opened.see_everything()
-    found = opened.page.evaluate(COVERED)
-    opened.context.close()
-    assert found == []
+def test_labels_cover_neither_each_other_nor_the_edge(seen: Pages, size: Any):
+    assert seen(size).page.evaluate(COVERED) == []
 
 
-def test_no_number_of_a_force_lies_over_an_arrow(browser: Browser, report: Path):
-    opened = Opened(browser, report)
-    opened.see_everything()
-    found = opened.page.evaluate(CROSSED)
-    numbers = opened.page.locator(".panel text.said").count()
-    opened.context.close()
-    assert numbers > 20
-    assert found == []
+def test_no_number_of_a_force_lies_over_an_arrow(seen: Pages):
+    page = seen(DESKTOP).page
+    assert page.locator(".panel text.said").count() > 20
+    assert page.evaluate(CROSSED) == []
 
 
 def test_cracks_open_with_the_slider_and_are_closed_at_rest(browser: Browser, report: Path):
     opened = Opened(browser, report)
-    opened.see_everything()
+    opened.look_at("#case-1 .tools")
     areas = []
     for amplitude in (0, 100, 300):
         opened.page.locator("#case-1 input[type=range]").evaluate(
@@ -126,13 +112,12 @@ def test_cracks_open_with_the_slider_and_are_closed_at_rest(browser: Browser, re
 
 
 @pytest.mark.parametrize("size", [DESKTOP, WIDE], ids=["desktop", "wide"])
-def test_no_table_is_wider_than_its_box(browser: Browser, report: Path, size: Any):
-    opened = Opened(browser, report, size)
-    opened.see_everything()
-    found = opened.page.locator(".scroll").evaluate_all(
-        "all => all.map((box) => [box.scrollWidth - box.clientWidth, box.getAttribute('aria-label')])"
+def test_no_table_is_wider_than_its_box(seen: Pages, size: Any):
+    found = (
+        seen(size)
+        .page.locator(".scroll")
+        .evaluate_all("all => all.map((box) => [box.scrollWidth - box.clientWidth, box.getAttribute('aria-label')])")
     )
-    opened.context.close()
     assert len(found) > 5
     assert [entry for entry in found if entry[0] > 1] == []
 
@@ -199,12 +184,10 @@ def test_overview_is_sorted_by_difference(browser: Browser, report: Path):
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE, WIDE], ids=["desktop", "phone", "wide"])
-def test_the_overview_says_what_it_counts_from(browser: Browser, report: Path, size: Any):
-    opened = Opened(browser, report, size)
-    labels = opened.page.locator("#dots .ticks span span")
+def test_the_overview_says_what_it_counts_from(untouched: Pages, size: Any):
+    labels = untouched(size).page.locator("#dots .ticks span span")
     shown = labels.evaluate_all(
         "all => all.filter((e) => e.checkVisibility({ checkVisibilityCSS: true })).map((e) => e.textContent)"
     )
-    opened.context.close()
     assert "least" in shown
     assert len(shown) > 1

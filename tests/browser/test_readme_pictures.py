@@ -25,10 +25,10 @@ def figures() -> Any:
     return module
 
 
-def test_picture_of_the_first_screen_says_what_the_report_says_now(browser: Browser):
+def test_picture_of_the_first_screen_says_what_the_report_says_now(browser: Browser, store: Path):
     """`python docs/figures.py` draws it again where this fails."""
     kept = Image.open(ROOT / "docs" / "first-screen.png")
-    words, picture = figures().first_screen(browser)
+    words, picture = figures().first_screen(browser, store)
     assert kept.text["Description"].split() == words.split()
     assert kept.width == 1280
     assert abs(kept.height - Image.open(io.BytesIO(picture)).height) <= 60, "fonts differ, nothing else"

@@ -12,65 +12,25 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from reports.page import build
+from tests.browser.opened import DESKTOP, PHONE, TABLET, UNDER_MENU, WIDE, Opened, Pages
 from tests.reports import samples
 
 pytestmark = pytest.mark.browser
-PHONE, DESKTOP = {"width": 360, "height": 780}, {"width": 1280, "height": 900}
-TABLET, WIDE = {"width": 768, "height": 1024}, {"width": 1920, "height": 1080}
 QUICK = ("phone-dark", "desktop-light")
-"""Pages that are searched for faults of accessibility outside the full tier, nine seconds each."""
-
-
-UNDER_MENU = 48
-"""Where the target of a link stands: below the menu, which stays in sight."""
-
-
-class Opened:
-    """A page with what it asked for and complained about."""
-
-    def __init__(self, browser: Browser, path: Path, size: Any = None) -> None:
-        self.context = browser.new_context(viewport=size or DESKTOP, bypass_csp=True)
-        self.page: Page = self.context.new_page()
-        self.requests: list[str] = []
-        self.complaints: list[str] = []
-        self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.on("console", lambda message: self.complaints.append(message.text))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("dialog", lambda dialog: (self.complaints.append(f"dialog {dialog.message}"), dialog.dismiss()))
-        self.page.goto(path.as_uri())
-
-    def unfold(self) -> None:
-        """Open all that is folded."""
-        self.page.evaluate("document.querySelectorAll('main details').forEach((fold) => { fold.open = true; })")
-
-    def see_everything(self) -> None:
-        """Unfold and scroll through the page, so that every figure is drawn."""
-        self.unfold()
-        top = 0
-        # The page grows as it is seen, because sections far off are laid out only when they come near.
-        while top < int(self.page.evaluate("document.documentElement.scrollHeight")):
-            self.page.evaluate(f"window.scrollTo({{top: {top}, behavior: 'instant'}})")
-            self.page.wait_for_timeout(20)
-            top += 700
-
-    def look_at(self, selector: str) -> None:
-        """See everything, then go to the first element that a selector finds."""
-        self.see_everything()
-        for _ in range(2):
-            self.page.locator(selector).first.evaluate("e => e.scrollIntoView({block: 'center', behavior: 'instant'})")
-            self.page.wait_for_timeout(100)
+"""Pages that are searched for faults of accessibility outside the full tier, six seconds each."""
 
 
 @pytest.fixture
 def opened(browser: Browser, report: Path) -> Iterator[Opened]:
+    """A page of its own, for a test that changes it."""
     found = Opened(browser, report)
     found.unfold()
     yield found
     found.context.close()
 
 
-def test_page_asks_for_nothing_and_complains_of_nothing(opened: Opened, report: Path):
-    opened.see_everything()
+def test_page_asks_for_nothing_and_complains_of_nothing(seen: Pages, report: Path):
+    opened = seen(DESKTOP)
     assert opened.requests == [report.as_uri()]
     assert opened.complaints == []
 
@@ -85,8 +45,8 @@ def test_hostile_names_are_shown_as_text(opened: Opened):
     assert opened.complaints == []
 
 
-def test_every_figure_is_drawn(opened: Opened):
-    opened.see_everything()
+def test_every_figure_is_drawn(seen: Pages):
+    opened = seen(DESKTOP)
     figures = opened.page.locator("[data-kind] svg")
     assert figures.count() == 2 * (4 + 5 + 1) + opened.page.locator(".trio svg").count()
     empty = figures.evaluate_all("all => all.filter(svg => svg.childElementCount === 0).length")
@@ -115,7 +75,7 @@ def test_slider_works_with_the_keyboard(opened: Opened):
 
 
 def test_slider_at_zero_puts_the_wall_back(opened: Opened):
-    opened.see_everything()
+    opened.look_at("#case-1 .tools")
     section = opened.page.locator("#case-1")
     section.locator("input[type=range]").evaluate(
         "slider => { slider.value = 0; slider.dispatchEvent(new Event('input', {bubbles: true})); }"
@@ -140,8 +100,8 @@ def test_flow_of_forces_replaces_resultants(opened: Opened):
     assert shown["thrust"].first.is_visible()
 
 
-def test_resultants_are_arrows_with_their_size_and_a_scale(opened: Opened):
-    opened.see_everything()
+def test_resultants_are_arrows_with_their_size_and_a_scale(seen: Pages):
+    opened = seen(DESKTOP)
     forces = opened.page.locator("#case-1 [data-kind=forces] svg").first
     groups = forces.locator("g[data-joint]")
     arrows = forces.locator("path:is(.force, .full)")
@@ -151,7 +111,7 @@ def test_resultants_are_arrows_with_their_size_and_a_scale(opened: Opened):
 
 
 def test_a_mechanism_stays_in_its_picture_at_the_end_of_the_slider(opened: Opened):
-    opened.see_everything()
+    opened.look_at("#case-1 .tools")
     section = opened.page.locator("#case-1")
     section.locator("input[type=range]").evaluate(
         "slider => { slider.value = slider.max; slider.dispatchEvent(new Event('input', {bubbles: true})); }"
@@ -224,12 +184,8 @@ def test_runs_are_filtered_by_word_method_and_trouble(opened: Opened):
 
 
 @pytest.mark.parametrize("size", [PHONE, TABLET, DESKTOP, WIDE], ids=["phone", "tablet", "desktop", "wide"])
-def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
-    opened = Opened(browser, report, size)
-    opened.see_everything()
-    width = opened.page.evaluate("document.documentElement.scrollWidth")
-    opened.context.close()
-    assert width <= size["width"]
+def test_page_never_scrolls_sideways(seen: Pages, size: Any):
+    assert seen(size).page.evaluate("document.documentElement.scrollWidth") <= size["width"]
 
 
 @pytest.mark.parametrize(
@@ -240,13 +196,12 @@ def test_page_never_scrolls_sideways(browser: Browser, report: Path, size: Any):
         for scheme in ("light", "dark")
     ],
 )
-def test_no_serious_accessibility_fault(browser: Browser, report: Path, size: Any, scheme: Any):
-    opened = Opened(browser, report, size)
-    opened.page.emulate_media(color_scheme=scheme)
-    opened.see_everything()
-    opened.page.evaluate(files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
-    found = opened.page.evaluate("axe.run(document)")
-    opened.context.close()
+def test_no_serious_accessibility_fault(seen: Pages, size: Any, scheme: Any):
+    page = seen(size).page
+    page.emulate_media(color_scheme=scheme)
+    page.evaluate(files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+    page.emulate_media(color_scheme="null")
     faults = [
         (fault["id"], fault["impact"], [node["target"] for node in fault["nodes"]][:3]) for fault in found["violations"]
     ]

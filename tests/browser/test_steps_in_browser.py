@@ -10,7 +10,7 @@ from playwright.sync_api import Browser
 
 from harness.model.comparison import CaseResults, ComparisonRun
 from reports.page.build import write_report
-from tests.browser.test_report_in_browser import Opened
+from tests.browser.opened import Opened
 from tests.reports.test_steps import results
 
 pytestmark = pytest.mark.browser

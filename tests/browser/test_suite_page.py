@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.test_report_in_browser import DESKTOP, PHONE, Opened
+from tests.browser.opened import DESKTOP, PHONE, Opened
 from tests.commands import drystone
 
 pytestmark = pytest.mark.browser
@@ -25,11 +25,10 @@ WORDS = """() => {
 
 
 @pytest.fixture(scope="module")
-def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def small(tmp_path_factory: pytest.TempPathFactory, store: Path) -> Path:
     """The page that `drystone compare --suite small` writes."""
-    folder = tmp_path_factory.mktemp("small")
-    path = folder / "report.html"
-    done = drystone("compare", "--suite", "small", "--report", path, "--store", folder / "store.sqlite")
+    path = tmp_path_factory.mktemp("small") / "report.html"
+    done = drystone("compare", "--suite", "small", "--report", path, "--store", store)
     assert done.returncode == 0, done.stderr
     return path
 
