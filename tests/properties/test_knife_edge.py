@@ -55,7 +55,7 @@ def test_a_wall_beyond_its_limit_falls_for_every_method(name, method):
 
 
 @pytest.mark.parametrize(
-    "method", ["la", "la-associated", pytest.param("fe", marks=SLOW), pytest.param("fe-newton", marks=SLOW), "de"]
+    "method", ["la", "la-associated", *(pytest.param(name, marks=SLOW) for name in ("fe", "fe-newton", "de"))]
 )
 @pytest.mark.parametrize("name", [pytest.param("par6-mu0", marks=SLOW), "par6-in-mu0"])
 def test_a_frictionless_stack_is_at_its_limit(name, method):
@@ -102,7 +102,7 @@ def test_springs_that_fall_where_statics_stands_say_so():
 
 
 def few(kind: str) -> list[Edge]:
-    return list(edges(kind, resolved=(2, 4), unresolved=(9, 12)))
+    return list(edges(kind, resolved=(4,), unresolved=(9,)))
 
 
 @pytest.mark.parametrize("method", ["la", "la-associated", "fe", "fe-newton", "de"])
@@ -117,5 +117,5 @@ def few(kind: str) -> list[Edge]:
 def test_walls_off_their_limit_agree_with_closed_forms(kind, method):
     found = prepared(load_method(method))
     told = {edge.name: verdict(edge, *answered(found, edge.wall)) for edge in few(kind)}
-    assert len(told) == 9
+    assert len(told) == 5
     assert set(told.values()) == {"right"}, told
