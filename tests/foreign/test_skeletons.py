@@ -48,7 +48,7 @@ def test_no_place_is_left_open_and_what_exists_is_not_written_over(language: str
     ("language", "wall", "other"),
     [
         ("c", "column-5-rocking", "la"),
-        ("javascript", "wall-21", "la-associated"),
+        ("javascript", "wall-21-friction-075", "la-associated"),
         ("javascript", "arch-100-tilt", "la-associated"),
     ],
 )
@@ -95,7 +95,7 @@ def test_a_package_in_python_is_found_by_its_entry_point_and_conforms(tmp_path: 
     rows = json.loads(done.stdout)[0]["checks"]
     assert {row["check"] for row in rows if row["outcome"] == "refused"} == {"cohesion", "dilatancy"}
     compared = drystone(
-        "compare", "wall-21", "--methods", "my-own,la-associated", "--json", cwd=tmp_path, env=environment
+        "compare", "wall-21-friction-075", "--methods", "my-own,la-associated", "--json", cwd=tmp_path, env=environment
     )
     mine, ours = json.loads(compared.stdout)["cases"][0]["results"]
     assert mine["multiplier"] == pytest.approx(ours["multiplier"], rel=1e-8)

@@ -51,12 +51,12 @@ def test_the_minimum_of_a_wall_with_a_certificate_is_called_so():
 
 
 def test_a_broken_certificate_is_a_violation_and_proves_nothing(tmp_path: Path):
-    shutil.copytree(shipped_cases() / "wall-21", tmp_path / "wall-21")
-    file = tmp_path / "wall-21" / "certificate.json.gz"
+    folder = shutil.copytree(shipped_cases() / "running-bond-overturns", tmp_path / "running-bond-overturns")
+    file = folder / "certificate.json.gz"
     document = json.loads(gzip.decompress(file.read_bytes()))
     document["bound"] = "56/100"
     file.write_bytes(gzip.compress(json.dumps(document).encode()))
-    compared = compared_on(tmp_path / "wall-21")
+    compared = compared_on(folder)
     (item,) = compared.run.cases
     assert item.certified is None
     assert "minimum" not in wall_findings(item)
@@ -113,10 +113,18 @@ def test_a_store_proves_nothing_its_certificates_are_checked_again(tmp_path: Pat
 GARDEN = {
     "format": "wall/1",
     "unit_weight": 20,
-    "friction": 0.65,
-    "pattern": {"type": "running_bond", "block_length": 0.4, "block_height": 0.2, "count": 6, "bricks": 3},
+    "friction": 0.75,
+    "pattern": {
+        "type": "running_bond",
+        "block_length": 0.4,
+        "block_height": 0.2,
+        "count": 10,
+        "bricks": 1,
+        "start": "full",
+    },
     "loads": {"live": {"body": [{"per_weight": [1, 0]}]}},
 }
+"""The wall of the library that overturns at .2; its windows are checked in a tenth of the time of those of wall-21."""
 
 
 def garden(**changes: Any) -> drystone.Wall:
@@ -135,13 +143,13 @@ def test_a_wall_written_elsewhere_has_the_certificate_of_the_equal_wall_of_the_l
     wall = garden(**changes)
     found = drystone.analyse(wall, "la")
     assert found.proof.standing == "minimum"
-    assert found.proof.bound == pytest.approx(LEAST, rel=3e-6)
+    assert found.proof.bound == pytest.approx(0.2, rel=3e-6)
 
 
 def test_another_wall_has_no_certificate_of_the_library():
-    for changes in ({"friction": 0.6501}, {"pattern": {**GARDEN["pattern"], "block_length": 0.41}}):
+    for changes in ({"friction": 0.7501}, {"pattern": {**GARDEN["pattern"], "block_length": 0.41}}):
         assert certificates.certificates_for(garden(**changes).case) == []
-    nearly = garden(friction=0.65 + 1e-8)  # found by its content, and refused as it is not the same
+    nearly = garden(friction=0.75 + 1e-8)  # found by its content, and refused as it is not the same
     assert len(certificates.certificates_for(nearly.case)) == 1
     compared = drystone.compare(nearly, ["la"], isolated=False)
     assert compared.run.cases[0].certified is None
@@ -149,12 +157,13 @@ def test_another_wall_has_no_certificate_of_the_library():
 
 
 def test_every_output_says_the_same_of_a_proved_minimum(tmp_path: Path):
-    file = tmp_path / "garden.json"
-    file.write_text(json.dumps(GARDEN))
+    """Of the block on two supports, whose minimum the springs do not find."""
+    file = tmp_path / "block.json"
+    shutil.copy(shipped_cases() / "single-block" / "wall.json", file)
     wall = drystone.read_wall(file)
     compared = drystone.compare(wall, ["fe", "la"], isolated=False)
     item = compared.run.cases[0]
-    said = "an exact certificate proves that no collapse state lies below 0.557997"
+    said = "an exact certificate proves that no collapse state lies below 0.399999"
     rows = compared.to_pandas().set_index("method")
     assert said in rows.loc["la", "proof_sentence"]
     assert rows["proof"].tolist() == ["none", "minimum"]
@@ -170,7 +179,7 @@ def test_every_output_says_the_same_of_a_proved_minimum(tmp_path: Path):
     store = tmp_path / "runs.sqlite"
     listed = run_command("compare", file, "--methods", "la", "--no-report", "--store", store).stdout
     assert said in " ".join(listed.split())
-    assert "∎ 0.5579978" in listed
+    assert "∎ 0.4" in listed
 
 
 def test_a_certificate_that_a_method_hands_on_counts_only_as_far_as_it_is_checked_here():
