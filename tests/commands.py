@@ -24,13 +24,18 @@ COMMAND = (sys.executable, "-m", "drystone.cli.main")
 
 
 def drystone(
-    *words: str | Path, cwd: Path | None = None, prefix: tuple[str, ...] = (), **more: Any
+    *words: str | Path,
+    cwd: Path | None = None,
+    variables: dict[str, str] | None = None,
+    prefix: tuple[str, ...] = (),
+    **more: Any,
 ) -> subprocess.CompletedProcess[str]:
     """Run a command to its end.
 
     Args:
         words: of the command, without "drystone".
         cwd: the working directory.
+        variables: of the environment, beside what there is, that nothing reads while Drystone is loaded.
         prefix: words before the command, such as those of `setpriv`.
         more: further arguments of `subprocess.run`; with any, or a prefix, the interpreter is a fresh one.
     """
@@ -40,7 +45,8 @@ def drystone(
         return subprocess.run([*prefix, *COMMAND, *told], cwd=cwd, check=False, **given)
     with tempfile.TemporaryDirectory() as folder:
         out, err = Path(folder) / "out", Path(folder) / "err"
-        code = _template().run({"words": told, "cwd": str(cwd or Path.cwd()), "out": str(out), "err": str(err)})
+        task = {"words": told, "cwd": str(cwd or Path.cwd()), "variables": variables or {}}
+        code = _template().run(task | {"out": str(out), "err": str(err)})
         return subprocess.CompletedProcess(told, code, out.read_text(), err.read_text())
 
 
@@ -114,6 +120,7 @@ def _become(task: dict[str, Any]) -> None:
         os.dup2(source, target)
         os.close(source)
     os.chdir(task["cwd"])
+    os.environ.update(task["variables"])
     sys.argv = ["drystone", *task["words"]]
     code: Any = 0
     try:

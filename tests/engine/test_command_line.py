@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -292,7 +291,7 @@ def test_a_rejected_answer_is_a_failure_of_the_comparison(wall: Path):
 
 
 def test_a_result_is_as_wide_as_the_terminal(wall: Path):
-    done = drystone("run", "la-associated", wall.name, cwd=wall.parent, env=os.environ | {"COLUMNS": "60"})
+    done = drystone("run", "la-associated", wall.name, cwd=wall.parent, variables={"COLUMNS": "60"})
     lines = done.stdout.splitlines()
     assert max(map(len, lines)) <= 60
     column = lines[0].index(lines[0].split(maxsplit=1)[1])
@@ -335,8 +334,5 @@ def test_the_process_of_a_command_ends_with_its_exit_code_and_all_that_it_wrote(
 )
 def test_a_shell_is_offered_methods_and_cases(words: tuple[str, ...], offered: list[str]):
     context = {"COMP_WORDS": " ".join(("drystone", *words)), "COMP_CWORD": str(len(words))}
-    environment = os.environ | context | {"_DRYSTONE_COMPLETE": "bash_complete"}
-    done = subprocess.run(
-        [sys.executable, "-m", "drystone"], env=environment, capture_output=True, text=True, timeout=60
-    )
+    done = drystone(variables=context | {"_DRYSTONE_COMPLETE": "bash_complete"})
     assert [line.removeprefix("plain,") for line in done.stdout.split()] == offered
