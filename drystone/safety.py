@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from drystone.walls import Wall
+from harness.engine.judge import judged_alone
 from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken, takers
 from harness.engine.run import Limits
@@ -123,7 +124,7 @@ class FactorOfSafety:
                 return "Whether the wall stands was not found."
             if math.isinf(self.upper):
                 return "The wall falls without friction; no state was found that stands."
-            if self.upper >= 1.0:
+            if self.upper >= 1.0 or self.reason:
                 return f"The wall falls with its friction divided by {self.upper:.8g}; no state was found that stands."
             return (
                 f"No factor of safety exists: the wall falls even with friction {1.0 / self.upper:.8g} times as large."
@@ -248,7 +249,12 @@ def factor_by(
             "loads.live",
             wall.case.origin,
         )
-    search = _Search(lambda at: runs.result(ReducedWall(wall.case, at, share), method, settings))
+
+    def run(at: float) -> Result:
+        reduced = ReducedWall(wall.case, at, share)
+        return judged_alone(reduced.assembly, runs.result(reduced, method, settings))
+
+    search = _Search(run)
     search.bracket(furthest)
     search.bisect(accuracy)
     return FactorOfSafety(

@@ -73,7 +73,9 @@ from harness.model.method_registry import check_takes
 from harness.model.result import Judgement, Result, bracket_is_wide, plastic_of, residual_of, result_of
 
 
-def judge(assembly: Assembly, result: Result, tolerance: float, quantity: str = "multiplier") -> Judgement:
+def judge(
+    assembly: Assembly, result: Result, tolerance: float, quantity: str = "multiplier", *, alone: bool = False
+) -> Judgement:
     """What an independent check says of the claim that a result makes; see this module's docstring.
 
     Args:
@@ -81,6 +83,7 @@ def judge(assembly: Assembly, result: Result, tolerance: float, quantity: str = 
         result: the answer as a result.
         tolerance: the largest residual that is acceptable for this method.
         quantity: what sentences call the multiplier, where that of this wall stands for another quantity.
+        alone: leave out the answer for other strength of the joints that comes with it.
     """
     if result.status is not Status.OK or result.finding is Finding.NONE:
         return Judgement(tolerance=tolerance, sentence="There is no answer to judge.")
@@ -100,11 +103,11 @@ def judge(assembly: Assembly, result: Result, tolerance: float, quantity: str = 
     judged = _judge_brittle if assembly.breaks else _judge_finding
     said = judged(assembly, forces, mechanism, result, tolerance, quantity)
     details = AnswerDetails(result.details)
-    if assembly.strong and details.has_without_strength:
+    if assembly.strong and details.has_without_strength and not alone:
         said = _with_other(
             said, assembly.residual, residual_of(result), "Without cohesion and tensile strength", quantity
         )
-    if assembly.breaks and details.has_with_strength:
+    if assembly.breaks and details.has_with_strength and not alone:
         plastic = replace(assembly, brittle=np.zeros_like(assembly.brittle))
         said = _with_other(said, plastic, plastic_of(result), "With plastic strength", quantity)
     if said.accepted and tolerance > COARSEST:
@@ -234,6 +237,18 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
         said.accepted = False
         said.sentence += f" {fault}"
     return said
+
+
+def judged_alone(assembly: Assembly, result: Result) -> Result:
+    """A judged result with what is said of it alone, not of the answer for other strength that comes with it.
+
+    Where the wall as described is asked about, an undecided residual answer takes nothing from its proof.
+    """
+    details = AnswerDetails(result.details)
+    if not details.has_without_strength and not details.has_with_strength:
+        return result
+    said = judge(assembly, result, result.judge.tolerance, alone=True)
+    return result.model_copy(update={"judge": said.model_copy(update={"code": result.judge.code})})
 
 
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:

@@ -144,6 +144,22 @@ def test_a_block_wedged_between_supports_stands_by_self_stress_alone():
     assert factor(wall, "fe").value is None
 
 
+def test_glue_holds_a_block_whose_fall_without_it_is_not_proved():
+    """F = 2 c A / W = 1.5; without glue springs find a fall that self-stress could prevent, so that none is proved."""
+    found = factor(drystone.build_wall(wedge() | {"cohesion": 15.0}), "fe")
+    assert found.lower <= 1.5 * (1.0 + 1e-5)
+    assert 1.5 <= found.upper <= 1.5002
+    assert found.reason == ""
+
+
+def test_a_search_that_stops_says_nothing_of_more_friction():
+    search = _Search(lambda at: made_up(at, 0.0, (0.0, 0.3), Status.NOT_CONVERGED))
+    search.bracket(100.0)
+    found = FactorOfSafety(UPRIGHT, "b", 0.0, 0.0, search.upper, None, search.falls, search.runs, search.reason)
+    assert found.sentence.startswith("The wall falls with its friction divided by 0.5; no state was found that stands.")
+    assert "At 0.25 the run decides nothing" in found.sentence
+
+
 def made_up(at: float, limit: float, doubt: tuple[float, float], status: Status) -> Result:
     """The answer of a method that decides nothing between two factors."""
     if doubt[0] <= at <= doubt[1]:
