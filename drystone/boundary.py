@@ -207,7 +207,9 @@ class Boundary:
         """Ask the direction between two neighbours; the two pairs that it leaves, or none where the chord holds."""
         if not a.bounded and not b.bounded:
             return []
-        ends = [end.at if end.bounded else end.direction * self._size() for end in (a, b)]
+        # Beside an unbounded direction the angle is halved, whatever lies far out elsewhere.
+        near = min(float(np.hypot(*end.at)) for end in (a, b) if end.bounded)
+        ends = [end.at if end.bounded else end.direction * near for end in (a, b)]
         middle = ends[0] / 2.0 + ends[1] / 2.0
         size = float(np.hypot(*middle))
         narrow = _cross(*ends) <= self.accuracy * np.hypot(*ends[0]) * np.hypot(*ends[1])
@@ -221,10 +223,6 @@ class Boundary:
         if a.bounded and b.bounded and point.bounded and abs(point.reach - size) <= self.accuracy * size:
             return []
         return [(a, point), (point, b)]
-
-    def _size(self) -> float:
-        """The largest reach so far."""
-        return max((point.reach for point in self.found if point.bounded), default=1.0)
 
     def all_points(self) -> tuple[BoundaryPoint, ...]:
         """Every point by the angle of its direction."""

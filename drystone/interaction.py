@@ -14,6 +14,7 @@ import numpy as np
 
 from drystone.boundary import FAR, Boundary, BoundaryPoint, Stopped
 from drystone.walls import Wall
+from harness.engine.judge import judged_alone
 from harness.engine.measures import magnitudes
 from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken
@@ -138,9 +139,12 @@ class CombinedWall:
 
     @cached_property
     def assembly(self) -> Assembly:
-        """The wall with the sum of both loads as its live load."""
+        """The wall with the sum of both loads as its live load; what cancels to rounding is zero."""
         first, second = (case.assembly for case in self.pair.cases)
-        return replace(first, live=self.x * first.live + self.y * second.live)
+        parts = self.x * first.live, self.y * second.live
+        live = parts[0] + parts[1]
+        rounding = 16.0 * np.finfo(float).eps * (abs(parts[0]) + abs(parts[1]))  # of direction, loads and products
+        return replace(first, live=np.where(abs(live) <= rounding, 0.0, live))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -189,7 +193,9 @@ class Domain:
         loads = f'of "{self.names[0]}" (x) and "{self.names[1]}" (y)'
         count = len(self.vertices)
         whole = self.exact and not self.reason
-        if not count and not (whole and len(self.edges)):
+        if whole and not len(self.edges):
+            what = f"The wall bears every pair of multipliers {loads}: the domain has no boundary."
+        elif not count and not whole:
             what = f"No boundary of the domain {loads} was found."
         elif whole:
             opened = f", unbounded as far as it was followed ({FAR:g} times)" if len(self.unbounded) else ""
@@ -312,7 +318,8 @@ def domain_by(
 
     def run(direction: FloatArray) -> Result:
         x, y = (direction / scale).tolist()
-        return runs.result(CombinedWall(pair, x, y), method, settings)
+        combined = CombinedWall(pair, x, y)
+        return judged_alone(combined.assembly, runs.result(combined, method, settings))
 
     boundary = Boundary(pair.loads() / scale[:, None, None], run, accuracy, most)
     try:

@@ -12,7 +12,7 @@ import pytest
 import drystone
 from harness.model.errors import InputError
 from tests import commands
-from tests.walls import stack
+from tests.walls import stack, wedge
 
 WEIGHT, WIDTH, HEIGHT, FRICTION = 16.0, 0.4, 2.0, 0.5
 
@@ -93,6 +93,28 @@ def test_a_load_that_lifts_bounds_a_half_plane():
     found = drystone.domain(FLAT, live=((0.0, 1.0), (0.0, -1.0)))
     np.testing.assert_allclose(found.edges, [(1.0, -1.0)], rtol=1e-9)
     assert "half-plane" in found.sentence
+
+
+def test_loads_that_are_multiples_to_rounding_bound_a_strip_too():
+    """Along it they cancel but for the last digits, which are no load: one was borne up to 1e15 times."""
+    way = np.array([29.434197616676265, -5.798966344310792])
+    for share in (-0.3, 0.7):
+        points = [
+            {"block": "1", "at": [0.0, 0.3643701576766467], "force": force.tolist()} for force in (way, share * way)
+        ]
+        cases = {name: {"live": {"points": [point]}} for name, point in zip("ab", points, strict=True)}
+        found = drystone.domain(drystone.build_wall(document(**cases), "block"))
+        assert (found.reason, len(found.edges)) == ("", 2)
+        np.testing.assert_allclose(found.edges[:, 1], share * found.edges[:, 0], rtol=1e-9)
+
+
+def test_a_wall_that_bears_both_loads_either_way_has_no_boundary():
+    """A block between fixed ones bears any load by friction, wedged by as much self-stress as that needs."""
+    held = {"type": "panel", "cell_length": 1.0, "cell_height": 1.0, "layout": ["LMR", "LBR"], "fixed": "LBR"}
+    wall = drystone.build_wall({"format": "wall/1", "unit_weight": 20, "friction": 0.5, "pattern": held}, "held")
+    found = drystone.domain(wall, live=((1.0, -1.0), (1.0, 0.0)))
+    assert found.as_json()["exact"]
+    assert "bears every pair" in found.sentence
 
 
 def test_edges_that_do_not_fit_the_vertices_are_no_polygon():
@@ -176,6 +198,21 @@ def test_points_of_the_least_known_states_lie_on_the_closed_form():
     slides = abs(found.vertices.sum(axis=1)) / (FRICTION * WEIGHT)
     np.testing.assert_allclose(np.maximum(overturns, slides), 1.0, rtol=1e-7)
     assert "points of the boundary" in found.sentence
+
+
+def test_points_beside_unbounded_directions_reach_far_out():
+    """A block glued between two fixed ones, drawn down by x W and pushed by y W / 2: W (1 + x) = 2 c A + mu |y| W / 2.
+
+    Without glue it falls, which springs do not prove: that is no fault of the glued wall. Far points elsewhere ended
+    the boundary at (0.5, 0).
+    """
+    found = drystone.domain(
+        drystone.build_wall(wedge() | {"cohesion": 15.0}), "fe", live=((0, -1), (0.5, 0)), accuracy=0.3
+    )
+    assert found.reason == ""
+    down = found.vertices[found.vertices[:, 0] > 0.0]
+    np.testing.assert_allclose(down[:, 0], 0.5 + 0.25 * abs(down[:, 1]), rtol=1e-6)
+    assert abs(down[:, 1]).max() > 5.0
 
 
 def test_wall_that_falls_has_no_domain():
