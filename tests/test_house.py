@@ -156,7 +156,6 @@ def test_shapes_of_a_wall_are_drawn_by_the_display_list_alone():
 ASKED_OF_OTHERS = {
     "harness/model/foreign/description.py: Settings",
     "harness/model/json_text.py: os",
-    "harness/model/reading.py: annotation",
     "harness/model/writing.py: error",
     "harness/formats/dxf.py: holder",
     "harness/formats/dxf.py: entity",

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from harness.model.build import Built, build
 from harness.model.errors import MOST_WORDED, InputError, did_you_mean, in_file, raise_faults
+from harness.model.field_words import names_at, remedy_at
 from harness.model.fields import MOST_BLOCKS, TAGS
 from harness.model.json_text import MOST_SHOWN, read_json
 from harness.model.names import faults_of_data
@@ -33,10 +34,12 @@ _PLAIN = {
     "bool_type": "it should be true or false",
     "too_long": "it has {actual_length} entries, and may have {max_length} at most",
     "too_short": "it has {actual_length} entries, and should have at least {min_length}",
-    "union_tag_not_found": 'it needs a "type"',
+    "union_tag_not_found": 'it has no "type"',
     "union_tag_invalid": 'its type is "{tag}", and should be one of {expected_tags}',
 }
 """Words for kinds of faults for which those of the validating library suppose that one writes Python."""
+_SHAPES = ("missing", "tuple_type", "list_type", "dict_type", "model_type", "model_attributes_type")
+"""Faults whose remedy is the kind of value that the field takes."""
 
 
 def validate(
@@ -63,8 +66,10 @@ def validate(
         if not beyond:
             faults += more(data)
         faults = faults or [_fault(model, data, fault, source) for fault in found]
-        first_of_place = {fault.element: fault for fault in reversed(faults)}.values()
-        raise_faults(sorted(first_of_place, key=lambda fault: _order(fault.element, data)), source, beyond)
+        first_of_place: dict[str, InputError] = {}
+        for each in faults:
+            first_of_place.setdefault(each.element, each)
+        raise_faults(sorted(first_of_place.values(), key=lambda fault: _order(fault.element, data)), source, beyond)
         raise AssertionError("a validation error has faults") from None
 
 
@@ -94,6 +99,10 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
         message = _PLAIN[fault["type"]].format(**context)
     if fault["type"] == "extra_forbidden":
         return _unknown_field(model, fault["loc"], place, source)
+    if fault["type"] in _SHAPES:
+        remedy = remedy_at(model, fault["loc"])
+    elif fault["type"] == "union_tag_not_found":
+        remedy = remedy_at(model, (*fault["loc"], "type"))
     if "input" in fault and not isinstance(fault["input"], dict | list):
         message += f" (given: {repr(fault['input'])[:MOST_SHOWN]})"
     return InputError(message, remedy, place, source)
@@ -110,7 +119,7 @@ def _unknown_field(model: type[BaseModel], location: tuple[int | str, ...], plac
             place,
             source,
         )
-    fields = _fields_at(model, location[:-1])
+    fields = names_at(model, location[:-1])
     known = f"Known here: {', '.join(fields)}" if fields else "Leave it out or correct its name"
     meant = did_you_mean(name[:MOST_SHOWN], fields)
     return InputError(f'unknown field "{name}"', f"{meant} {known}".strip(), place, source)
@@ -137,34 +146,6 @@ def _place(location: tuple[int | str, ...], data: Any) -> str:
         if isinstance(here, dict) and isinstance(here.get("id"), str):
             named = f' ("{here["id"]}")'
     return path + named
-
-
-def _fields_at(model: type[BaseModel], location: tuple[int | str, ...]) -> list[str]:
-    current: Any = model
-    for part in location:
-        if isinstance(part, int):
-            continue
-        if not (isinstance(current, type) and issubclass(current, BaseModel)):
-            return []
-        field = current.model_fields.get(part)
-        if field is None:
-            continue
-        inner = [
-            member
-            for member in _members(field.annotation)
-            if isinstance(member, type) and issubclass(member, BaseModel)
-        ]
-        if len(inner) != 1:
-            return []
-        current = inner[0]
-    return [field.alias or name for name, field in current.model_fields.items()]
-
-
-def _members(annotation: Any) -> list[Any]:
-    arguments = getattr(annotation, "__args__", None)
-    if not arguments:
-        return [annotation]
-    return [member for argument in arguments for member in _members(argument)]
 
 
 _MOST_ENTRIES = {"blocks": MOST_BLOCKS, "interfaces": 3 * MOST_BLOCKS}

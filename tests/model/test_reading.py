@@ -8,10 +8,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import BaseModel
 
+from harness.engine.sweep.study import Study
+from harness.formats.importing import Mapping
+from harness.model.case import CaseFile
 from harness.model.errors import InputError, InputFaults, did_you_mean, visible
+from harness.model.field_words import fields_at, words_of
+from harness.model.foreign.program_method import Description
+from harness.model.foreign.register import Program
+from harness.model.foreign.result_document import ResultDocument
 from harness.model.json_text import MOST_NESTED, json_of, read_bytes, read_json, read_text
 from harness.model.reading import parse_wall
+from harness.model.wall import Wall
 
 MANY: dict[str, Any] = {
     "format": "wall/1",
@@ -43,6 +52,45 @@ def test_all_faults_are_told_at_once_in_the_order_of_the_file():
     assert lines[0] == "many.json: 6 faults"
     assert len(lines) == 1 + len(places)
     assert all(fault.source == "many.json" for fault in caught.value.faults)
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        (
+            {"pattern": {"type": "stack", "width": 1, "height": 1}},
+            "pattern.count: it is missing. Give a whole number of at least 1",
+        ),
+        ({"pattern": [{"width": 1}]}, 'pattern[0]: it has no "type". Give "running_bond" or "ring" or "stack"'),
+        ({"pattern": {"type": "ring", "colour": 1}}, "Known here: prefix, origin"),
+        (
+            {"blocks": [{"id": "a"}]},
+            "Give a list of at least 3 entries, each a pair of numbers, as [0, 1]: vertices in order",
+        ),
+        ({"blocks": {}}, "it should be a list, in square brackets. Give a list of entries, each an object with"),
+        ({"ties": [{"to": {"block": "a"}}]}, "ties[0].to.at: it is missing. Give a pair of numbers, as [0, 1]: (x, y)"),
+        ({"ties": [{}]}, 'ties[0].from: it is missing. Give an object with "block", "at"'),
+        ({"interfaces": [{}]}, 'interfaces[0].between: it is missing. Give a pair of names, as ["a", "b"]: ids of'),
+        ({"loads": {"dead": {"fills": [{"passive": {}}]}}}, "Give a number above 0 and of at most 1, as 1: share m"),
+        (
+            {"load_cases": {"a": {"live": {"points": [{}]}}}},
+            "load_cases.a.live.points[0].block: it is missing. Give text",
+        ),
+    ],
+)
+def test_a_fault_of_shape_says_what_the_field_takes(fields: dict[str, Any], said: str):
+    with pytest.raises(InputError) as caught:
+        parse_wall({"format": "wall/1", "friction": 0.5} | fields, "wall.json")
+    assert said in str(caught.value)
+
+
+@pytest.mark.parametrize("model", [Wall, CaseFile, Study, Mapping, Program, Description, ResultDocument])
+def test_every_field_that_may_be_missing_has_a_remedy(model: type[BaseModel]):
+    schema = model.model_json_schema()
+    for part in (schema, *schema.get("$defs", {}).values()):
+        for name in part.get("required", ()):
+            (field,) = fields_at(model, (name,)) if part is schema else [part["properties"][name]]
+            assert words_of(model, field), name
 
 
 def test_the_same_fault_of_many_elements_is_one_line():
