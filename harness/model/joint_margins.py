@@ -2,9 +2,9 @@
 
 The joint law gives the yield slacks y1, y2 of its two ends and its shear strength (`harness.model.joint_law`). The
 shear utilisation is |s| / strength, the eccentricity utilisation |y1 - y2| / (F (1 - F / F0)), F = y1 + y2: in a dry
-joint 2 |e| / L, and one in every joint where an end is about to open or to crush; F0 is the force that crushes it. The
-edge stress is that of the rectangular stress block, N / (t (L - 2 |e|)), of the face length L and thickness t
-(Heyman 1966; EN 1996-1-1, 6.1.2.2).
+joint 2 |e| / L, and one in every joint where an end is about to open or to crush; F0 is the force that crushes it
+evenly. The edge stress is that of the rectangular stress block, N / (t (L - 2 |e|)), of the face length L and thickness
+t (Heyman 1966; EN 1996-1-1, 6.1.2.2).
 """
 
 from __future__ import annotations
@@ -77,7 +77,9 @@ def joint_margins(
     length = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
     width = length - 2.0 * abs(eccentricity)
     pressed = slacks.sum(axis=1)
-    reach = pressed * (1.0 - pressed / (assembly.crushing + 2.0 * assembly.law.constant[:, 0]))
+    whole = assembly.crushing + 2.0 * assembly.law.constant[:, 0]
+    ends = _share(abs(slacks[:, 0] - slacks[:, 1]), pressed * (1.0 - pressed / whole), small)
+    ends[pressed >= (1.0 - negligible) * whole] = 1.0  # crushed evenly, where the domain has shrunk to a point
     return JointMargins(
         normal,
         shear,
@@ -85,7 +87,7 @@ def joint_margins(
         length,
         np.asarray(thickness, dtype=float),
         _share(abs(shear), strength, small),
-        _share(abs(slacks[:, 0] - slacks[:, 1]), reach, small),
+        ends,
         _share(normal / thickness, width, negligible * length),
     )
 

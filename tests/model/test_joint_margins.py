@@ -103,6 +103,16 @@ def test_cohesion_and_tensile_strength_leave_more():
     assert np.isnan(all_used.edge_stress), "the resultant lies outside the joint"
 
 
+def test_a_joint_that_is_crushed_evenly_has_used_all_of_its_strength():
+    """A block of 4 kN that 6 kN press besides crushes its joint of 10 kN/m2 on 1 m2; it was called closed."""
+    made = case(stack(1, 1.0, 0.2), 0.6, loads={"live": {"body": [{"per_weight": [0, -1]}]}}, compressive_strength=10.0)
+    result = drystone.analyse(drystone.Wall(made), "la-associated")
+    assert result.multiplier == pytest.approx(1.5)
+    (row,) = joint_rows(made, result)
+    assert (row.number("utilisation"), row.state) == (1.0, "at its limit")
+    assert row.number("edge_stress") == pytest.approx(10.0)
+
+
 def test_broken_joints_have_no_cohesion_left(tmp_path: Path):
     """Glued by c A = 4 the block breaks loose and slides at its friction, all of which it uses then."""
     wall = drystone.build_wall(wall_data(stack(1, WIDTH, 0.2), FRICTION, cohesion=4.0 / WIDTH, after="residual"))
