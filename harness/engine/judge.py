@@ -239,7 +239,7 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
     return said
 
 
-def judged_alone(assembly: Assembly, result: Result) -> Result:
+def judged_alone(assembly: Assembly, result: Result, quantity: str = "multiplier") -> Result:
     """A judged result with what is said of it alone, not of the answer for other strength that comes with it.
 
     Where the wall as described is asked about, an undecided residual answer takes nothing from its proof.
@@ -247,7 +247,7 @@ def judged_alone(assembly: Assembly, result: Result) -> Result:
     details = AnswerDetails(result.details)
     if not details.has_without_strength and not details.has_with_strength:
         return result
-    said = judge(assembly, result, result.judge.tolerance, alone=True)
+    said = judge(assembly, result, result.judge.tolerance, quantity, alone=True)
     return result.model_copy(update={"judge": said.model_copy(update={"code": result.judge.code})})
 
 

@@ -59,6 +59,19 @@ def test_block_on_a_base_that_settles():
         assert work == pytest.approx(each.forces_at, rel=1e-6)
 
 
+def test_a_glued_block_beside_it_changes_nothing():
+    """Without its glue it falls, which a measured motion does not prove: the whole wall was said not to be held."""
+
+    def square(name: str, x: float, **more: bool) -> dict[str, object]:
+        return {"id": name, "polygon": [[x, 0], [x + 1, 0], [x + 1, 1], [x, 1]], **more}
+
+    made = data(DOWN)
+    made["blocks"] += [square("west", -4, fixed=True), square("glued", -3), square("east", -2, fixed=True)]
+    made["friction"] = {"default": 0.5, "rules": [{"joint": "head", "value": 0.5, "cohesion": 15}]}
+    found = both(held_reactions(drystone.build_wall(made)))
+    assert values(found) == pytest.approx([2.0 / 7.0 * WEIGHT, WEIGHT], rel=STATED)
+
+
 @pytest.mark.parametrize("part", PARTS)
 def test_block_on_a_base_of_which_any_part_settles(part: float):
     """From half of the base on the moving part bears nothing at the least, and the wall may begin there."""
