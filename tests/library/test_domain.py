@@ -207,12 +207,12 @@ def test_points_beside_unbounded_directions_reach_far_out():
     the boundary at (0.5, 0).
     """
     found = drystone.domain(
-        drystone.build_wall(wedge() | {"cohesion": 15.0}), "fe", live=((0, -1), (0.5, 0)), accuracy=0.3
+        drystone.build_wall(wedge() | {"cohesion": 15.0}), "fe", live=((0, -1), (0.5, 0)), accuracy=0.05
     )
     assert found.reason == ""
     down = found.vertices[found.vertices[:, 0] > 0.0]
     np.testing.assert_allclose(down[:, 0], 0.5 + 0.25 * abs(down[:, 1]), rtol=1e-6)
-    assert abs(down[:, 1]).max() > 5.0
+    assert abs(down[:, 1]).max() > 20.0
 
 
 def test_wall_that_falls_has_no_domain():
