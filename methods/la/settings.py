@@ -41,7 +41,8 @@ class SearchSettings(Settings):
         seed: of all random draws.
         effort: "quick" few paths and descents; "normal" continuation in friction too, less of it on large walls; "deep"
             much of everything, whatever the size.
-        starts: central paths with other weights of the blocks; None as `effort` says.
+        starts: central paths with other weights of the blocks that may lead to nothing lower in a row; None as
+            `effort` says.
         continuation: factors on friction of the friction continuation, in order; None as `effort` says, empty for none.
         failures: draws without success that end a ray descent; None as `effort` says.
         rational_interfaces: interfaces up to which the result is confirmed in fractions.

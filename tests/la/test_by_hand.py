@@ -15,7 +15,7 @@ from methods.la.certify.proof import TreeProof
 from methods.la.core.exact import close_tight, exact_forces
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
-from methods.la.core.state import CollapseState, friction_work, local_residuals, residuals
+from methods.la.core.state import CollapseState, local_residuals, residuals
 from methods.la.core.vertex_programmes import ForceProgramme, RowScaling, row_scaling
 from methods.la.find_certificate import certificate
 from methods.la.interior.arc import ArcPath, Stepping
@@ -86,13 +86,6 @@ def test_a_mechanism_of_a_part_is_one_of_the_whole_wall_with_the_rates_of_its_mo
     whole = in_whole(pair, region, PathResult(point, True, 1, 0.0, 0.0, 0.0, [])).point
     assert float(pair.live @ whole.velocities) == pytest.approx(pair.live_work)
     assert whole.rates == pytest.approx(pair.rates_of_velocities(whole.velocities, associated=True), abs=1e-12)
-
-
-def test_work_of_friction_as_a_share_of_the_live_load_at_its_multiplier(problem: Problem) -> None:
-    sliding = state(problem, [[0.0, 0.0, -0.1], [0.0, 0.0, -0.3]], 0.5, [2.0, 0.0, 0.0])
-    assert friction_work(problem, sliding) == pytest.approx((0.1 + 0.3) / 0.5)
-    assert friction_work(problem, replace(sliding, multiplier=-0.5)) == pytest.approx(0.8)
-    assert friction_work(problem, replace(sliding, velocities=-sliding.velocities)) == np.inf
 
 
 def test_residuals_where_they_arise_are_shares_of_what_acts_there(problem: Problem) -> None:

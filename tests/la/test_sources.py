@@ -21,7 +21,7 @@ from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
 from methods.la.sources import SOURCES, explore
 from methods.la.sources.budget import Budget, SearchLimits, Sizes
-from methods.la.sources.paths import CentralPath
+from methods.la.sources.paths import CentralPath, OtherWeights
 from methods.la.sources.search import Search
 from methods.la.sources.springs import LowPrestress
 from methods.numerics.failures import SingularMatrix
@@ -134,14 +134,28 @@ def springs_on(wall: Any) -> tuple[int, float]:
     return row["states"], answer.multiplier
 
 
-def test_springs_end_with_gravity_where_the_least_state_rubs_and_go_on_where_none_does() -> None:
-    """Bricks 1:1 on friction 1.2: what is known before rocks only, and the tenth path leads from .28261 to .26696."""
+def test_springs_follow_gravity_alone_on_right_angled_joints_and_other_block_weights_lead_lower() -> None:
+    """Bricks 1:1 on friction 1.2: ten paths of springs led from .28261 to .26696 before there were such weights."""
     states, multiplier = springs_on(running_bond(6, 3, 0.2, 0.65))
     assert states == 1
     assert multiplier == pytest.approx(0.5579977782523)
     states, multiplier = springs_on(running_bond(6, 3, 0.4, 1.2))
-    assert states > 10
+    assert states == 1
     assert multiplier == pytest.approx(0.2669565217391)
+
+
+def test_other_block_weights_go_on_until_so_many_paths_in_a_row_led_to_nothing_lower(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem = make_problem(running_bond(6, 3, 0.4, 1.2))
+    search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(starts=4)))
+    before: list[float] = []  # the least multiplier known before each path
+    follow = search.ends_of_copies
+    monkeypatch.setattr(search, "ends_of_copies", lambda *asked: before.append(search.record.least) or follow(*asked))
+    for state in OtherWeights(blocks_at_once=1).states(search):
+        search.note(state)
+    assert before.count(search.record.least) == 4
+    assert len(before) > 4
 
 
 @pytest.mark.slow

@@ -53,14 +53,6 @@ def residuals(problem: Problem, state: CollapseState) -> dict[str, float]:
     }
 
 
-def friction_work(problem: Problem, state: CollapseState) -> float:
-    """The work that friction takes on the motion of a state, as a share of that of the live load at its multiplier."""
-    slip = problem.strains(state.velocities)[:, 2]
-    work = abs(state.multiplier) * float(problem.live @ state.velocities)
-    taken = float(abs(state.forces[:, 2] * slip).sum())
-    return taken / work if work > 0.0 else float("inf")
-
-
 def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray, FloatArray, FloatArray]:
     """What is wrong about a state where it arises: equilibrium (n,) of blocks, tension and closing (m,) of interfaces.
 

@@ -18,7 +18,7 @@ class SearchLimits:
     """How much is tried.
 
     Attributes:
-        starts: central paths of the wall with blocks of other weights.
+        starts: central paths of the wall with blocks of other weights that may lead to nothing lower in a row.
         failures, draws: draws without a lower value that end a descent, and draws of one at most.
         descents: lowest states of each source, and of each step of the friction continuation, that are descended from.
         continuation: factors on friction of the steps of the friction continuation.
@@ -51,12 +51,12 @@ class Sizes:
 
     Attributes:
         few_blocks, some_blocks: up to the first all steps of the friction continuation, up to the next half of
-            them, three descents a source on both; above, no steps of it but those of rough joints, no other weights,
-            and one longer descent.
+            them, three descents a source on both; above, no steps of it but those of rough joints, and one longer
+            descent.
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree finishes within its nodes.
-        starts: with other weights, up to few blocks; a third up to some.
+        starts, blocks_started: with other weights, and those times the blocks of the wall, at most.
         continuation, fine_continuation: factors on friction: mechanisms found at each are carried on. The fine one
             first goes down from above the friction of the wall.
     """
@@ -66,7 +66,8 @@ class Sizes:
     descended: int = 1000
     provable: int = 16
     provable_ring: int = 30
-    starts: int = 96
+    starts: int = 144
+    blocks_started: int = 4500
     continuation: tuple[float, ...] = (0.55, 0.65, 0.75, 0.85, 0.925)
     fine_continuation: tuple[float, ...] = (
         *(1.3, 1.15, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5),
@@ -79,6 +80,7 @@ class Sizes:
         most = self.provable_ring if interfaces <= blocks + 2 else self.provable
         nodes = 1500 if interfaces <= most else 0
         descents = int(interfaces <= self.descended)
+        starts = min(self.starts, self.blocks_started // max(blocks, 1))
         if effort == "quick":
             return SearchLimits(0, 8, 200, descents, nodes=min(nodes, 100), breakpoints=300, unbounded_breakpoints=300)
         if effort == "deep":
@@ -86,11 +88,11 @@ class Sizes:
             work = 2 * self.starts, 40, 200, 8, self.fine_continuation, nodes, 3 * nodes, nodes
             return SearchLimits(*work, 1_000_000, 1e7, 100_000, 100_000)
         if blocks <= self.few_blocks:
-            return SearchLimits(self.starts, 12, 200, 3, self.continuation, nodes)
+            return SearchLimits(starts, 12, 200, 3, self.continuation, nodes)
         if blocks <= self.some_blocks:
-            return SearchLimits(self.starts // 3, 12, 200, 3, self.continuation[::2], nodes)
+            return SearchLimits(starts, 12, 200, 3, self.continuation[::2], nodes)
         if descents:
-            return SearchLimits(0, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
+            return SearchLimits(starts, 40, breakpoints=20_000, unbounded_breakpoints=20_000)
         return SearchLimits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
 
 

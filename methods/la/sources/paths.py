@@ -108,7 +108,7 @@ class AssociatedForces:
 
 @dataclass(frozen=True)
 class OtherWeights:
-    """Central paths of the wall with blocks of other weights, as many as the budget says.
+    """Central paths of the wall with blocks of other weights, until as many as the budget says led to nothing lower.
 
     Mechanisms do not depend on the weights, only the forces that fit them do. With random weights the central path
     goes by other forces, and ends at mechanisms that it misses with those of the wall, from any start. Unloaded joints
@@ -132,12 +132,12 @@ class OtherWeights:
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a mechanism that paths end at and forces of the wall fit."""
         guide = with_reduced_friction(search.problem, self.factor) or search.problem
-        blocks, left = search.problem.n_velocities // 3, search.budget.limits.starts
+        blocks, most = search.problem.n_velocities // 3, search.budget.limits.starts
         at_once = 1 if search.newton.large else max(self.blocks_at_once // blocks, 1)
         tried: set[bytes] = set()
-        while left > 0 and search.budget.steps_left(search.record.known):
-            count = min(at_once, left)
-            left -= count
+        in_vain = 0
+        while in_vain < most and search.budget.steps_left(search.record.known):
+            count, least = min(at_once, most - in_vain), search.record.least
             shares = search.generator.uniform(1.0 - self.spread, 1.0 + self.spread, size=(count, blocks))
             dead = guide.dead * np.repeat(shares, 3, axis=1)
             for slack, rates in search.ends_of_copies(guide, dead):
@@ -146,6 +146,7 @@ class OtherWeights:
                 tried.add(moving)
                 if state is not None:
                     yield state
+            in_vain = 0 if search.record.least < least else in_vain + count
 
 
 @dataclass(frozen=True)

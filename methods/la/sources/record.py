@@ -70,12 +70,6 @@ class Record:
         """What each source led to in the end: of one descent or more, or without any."""
         return [tried.ends or tried.states for tried in self.tried]
 
-    @property
-    def agreeing(self) -> int:
-        """How many times a source, or descents from its states, ended at the least multiplier."""
-        ends = (min((state.multiplier for state in states), default=float("inf")) for states in self.ends)
-        return sum(end <= self.least + LEAST_IMPROVEMENT for end in ends)
-
     def led_to_state(self, source: str) -> bool:
         """Whether a source of this name led to a state."""
         return any(tried.source == source and tried.states for tried in self.tried)

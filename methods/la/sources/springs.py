@@ -25,7 +25,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
-from methods.la.core.state import CollapseState, friction_work, moving_contacts
+from methods.la.core.state import CollapseState, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.sources.arcs import ArcPaths
 from methods.la.sources.friction_continuation import with_reduced_friction
@@ -83,17 +83,15 @@ class CommittedHistories:
 class LowPrestress:
     """Paths from forces with little self-stress: gravity's, then vertices or mixtures of statics.
 
-    On walls of many interfaces those of gravity with updated plastic slip come between. docs/notes/limit-analysis.md
-    gives the evidence for the limits below.
+    On walls of many interfaces those of gravity with updated plastic slip come between. On small walls whose joints are
+    all parallel or at right angles gravity's is the only one: central paths with other block weights lead lower there,
+    in less time. docs/notes/limit-analysis.md gives the evidence for this and for the limits below.
 
     Attributes:
         least, most: interfaces between which it is tried; above 6,000 the path of gravity takes minutes.
-        vertices_up_to: interfaces up to which paths start from pure vertices. Above, none is begun on walls of
-            right-angled joints where gravity ends above the least known state. Gravity is no such sign where joints
-            have many directions.
-            Up to there none is where gravity leads to nothing lower, friction does work in the least state and as many
-            strategies as `agreeing` ended at it.
-        rubs: share of the work of the live load that friction takes in such a state; rounding leaves 1e-15.
+        vertices_up_to: interfaces up to which paths start from pure vertices, and walls of right-angled joints have
+            gravity's path alone. Above, such walls have no other where that ends above the least known state; gravity
+            is no such sign where joints have many directions.
         gravity_alone: interfaces above which there is no other path, because updated histories need many breakpoints
             and gain little; and none on walls of right-angled joints where paths by arc length led to states, which are
             lower.
@@ -107,8 +105,6 @@ class LowPrestress:
     least: int = 0
     most: int = 6000
     vertices_up_to: int = 200
-    rubs: float = 1e-6
-    agreeing: int = 2
     gravity_alone: int = 2000
     committed: CommittedHistories = CommittedHistories()
     vertex: tuple[tuple[float, float, float], ...] = ((1.0, 0.0, 0.0),)
@@ -126,23 +122,15 @@ class LowPrestress:
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
-        right_angled = _right_angled(search.problem, search.choices.springs.right)
-        known = search.record.least
-        alone = search.problem.n_interfaces > self.gravity_alone
-        if right_angled and alone and search.record.led_to_state(ArcPaths.name):
+        problem, known = search.problem, search.record.least
+        right_angled = _right_angled(problem, search.choices.springs.right)
+        if right_angled and problem.n_interfaces > self.gravity_alone and search.record.led_to_state(ArcPaths.name):
             return
+        small = problem.n_interfaces <= self.vertices_up_to
         for k, state in ends(search, self._starts(search)):
             yield state
-            if k == 0 and right_angled and self._gravity_is_enough(search, known, state.multiplier):
+            if k == 0 and right_angled and (small or state.multiplier > known + LEAST_IMPROVEMENT):
                 return
-
-    def _gravity_is_enough(self, search: Search, known: float, gravity: float) -> bool:
-        """Whether no path is begun after that of gravity, which led to a state, from the least one `known` before."""
-        if search.problem.n_interfaces > self.vertices_up_to:
-            return gravity > known + LEAST_IMPROVEMENT
-        least = search.record.improvements[-1].state
-        rubs = friction_work(search.problem, least) > self.rubs
-        return gravity >= known - LEAST_IMPROVEMENT and rubs and search.record.agreeing >= self.agreeing
 
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
