@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.knife_edge import KINDS, Edge, edges, verdict
+from benchmarks.knife_edge import KINDS, edges, verdict
 from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.method import Finding, Status
@@ -101,10 +101,7 @@ def test_springs_that_fall_where_statics_stands_say_so():
     assert "Statics alone would bear up to 0.09676127, so the wall may also stand" in result.sentence
 
 
-def few(kind: str) -> list[Edge]:
-    return list(edges(kind, resolved=(4,), unresolved=(9,)))
-
-
+@pytest.mark.parametrize("powers", [(4, 9), pytest.param((2, 12), marks=SLOW)])
 @pytest.mark.parametrize("method", ["la", "la-associated", "fe", "fe-newton", "de"])
 @pytest.mark.parametrize(
     "kind",
@@ -114,8 +111,9 @@ def few(kind: str) -> list[Edge]:
         if "12" not in kind
     ],
 )
-def test_walls_off_their_limit_agree_with_closed_forms(kind, method):
-    found = prepared(load_method(method))
-    told = {edge.name: verdict(edge, *answered(found, edge.wall)) for edge in few(kind)}
+def test_walls_off_their_limit_agree_with_closed_forms(kind, method, powers):
+    found, (resolved, unresolved) = prepared(load_method(method)), powers
+    walls = edges(kind, resolved=(resolved,), unresolved=(unresolved,))
+    told = {edge.name: verdict(edge, *answered(found, edge.wall)) for edge in walls}
     assert len(told) == 5
     assert set(told.values()) == {"right"}, told
