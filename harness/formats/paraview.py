@@ -130,7 +130,13 @@ def _mesh(built: Built, result: Result | None, frame: _VtkStep) -> Any:
         fields["is_joint"][1][m:] = 0
         fields["tension"] = np.full(len(order), np.nan), np.concatenate([np.full(m, np.nan), of_bars])
     margins = joint_margins(as_answered(assembly, result), built.joint_thickness, forces)
-    for name in ("eccentricity", "shear_utilisation", "eccentricity_utilisation", "edge_stress"):
+    for name in (
+        "eccentricity",
+        "shear_utilisation",
+        "eccentricity_utilisation",
+        "crushing_utilisation",
+        "edge_stress",
+    ):
         of_joints = np.concatenate([getattr(margins, name), np.full(len(bars), np.nan)])
         fields[name] = np.full(len(order), np.nan), of_joints
     if len(lines):

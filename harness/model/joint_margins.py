@@ -3,8 +3,9 @@
 The joint law gives the yield slacks y1, y2 of its two ends and its shear strength (`harness.model.joint_law`). The
 shear utilisation is |s| / strength, the eccentricity utilisation |y1 - y2| / (F (1 - F / F0)), F = y1 + y2: in a dry
 joint 2 |e| / L, and one in every joint where an end is about to open or to crush; F0 is the force that crushes it
-evenly. The edge stress is that of the rectangular stress block, N / (t (L - 2 |e|)), of the face length L and thickness
-t (Heyman 1966; EN 1996-1-1, 6.1.2.2).
+evenly. The crushing utilisation is F / (F0 (1 - |y1 - y2| / F)): without tensile strength the edge stress over the
+compressive strength. The edge stress is that of the rectangular stress block, N / (t (L - 2 |e|)), of the face length L
+and thickness t (Heyman 1966; EN 1996-1-1, 6.1.2.2).
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ class JointMargins:
         thickness: out of plane t [length].
         shear_utilisation: |s| / shear strength; exists where there is a strength.
         eccentricity_utilisation: see the module; exists where the ends have a slack.
+        crushing_utilisation: see the module; exists where the joint crushes and its force acts on a width.
         edge_stress: greatest stress [force/length^2]; exists where N > 0 acts on a width, not at an edge.
     """
 
@@ -49,12 +51,13 @@ class JointMargins:
     thickness: FloatArray
     shear_utilisation: FloatArray
     eccentricity_utilisation: FloatArray
+    crushing_utilisation: FloatArray
     edge_stress: FloatArray
 
     @cached_property
     def utilisation(self) -> FloatArray:
-        """(m,) the larger utilisation."""
-        return np.fmax(self.shear_utilisation, self.eccentricity_utilisation)
+        """(m,) the largest utilisation."""
+        return np.fmax(np.fmax(self.shear_utilisation, self.eccentricity_utilisation), self.crushing_utilisation)
 
 
 def joint_margins(
@@ -76,10 +79,10 @@ def joint_margins(
     eccentricity = 0.5 * assembly.length * _share(forces[:, 1] - forces[:, 0], normal, small)
     length = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
     width = length - 2.0 * abs(eccentricity)
-    pressed = slacks.sum(axis=1)
+    pressed, uneven = slacks.sum(axis=1), abs(slacks[:, 0] - slacks[:, 1])
     whole = assembly.crushing + 2.0 * assembly.law.constant[:, 0]
-    ends = _share(abs(slacks[:, 0] - slacks[:, 1]), pressed * (1.0 - pressed / whole), small)
-    ends[pressed >= (1.0 - negligible) * whole] = 1.0  # crushed evenly, where the domain has shrunk to a point
+    free = 1.0 - _share(uneven, pressed, small)  # the part of the face that the stress block covers
+    block = np.multiply(whole, free, out=np.full(len(whole), np.nan), where=np.isfinite(whole) & (free > negligible))
     return JointMargins(
         normal,
         shear,
@@ -87,7 +90,8 @@ def joint_margins(
         length,
         np.asarray(thickness, dtype=float),
         _share(abs(shear), strength, small),
-        ends,
+        _share(uneven, pressed * (1.0 - pressed / whole), small),
+        _share(pressed, block, 0.0),
         _share(normal / thickness, width, negligible * length),
     )
 
@@ -209,13 +213,19 @@ JOINTS: tuple[JointColumn, ...] = (
     _text("block_b", "id of the second block"),
     _text("joint", "kind of the joint: bed, head or as given"),
     _text("state", "opens, slips, at its limit, closed, or unloaded"),
-    _number("utilisation", "1", "the larger of the two utilisations; the most critical joint stands first"),
+    _number("utilisation", "1", "the largest of the three utilisations; the most critical joint stands first"),
     _number("shear_utilisation", "1", "shear over shear strength; empty where there is no strength", "shear"),
     _number(
         "eccentricity_utilisation",
         "1",
         "2 e / distance of the contact points in a dry joint; one where an end is about to open",
         "eccentricity",
+    ),
+    _number(
+        "crushing_utilisation",
+        "1",
+        "stress of the rectangular stress block over the compressive strength; empty where the joint does not crush",
+        "crushing",
     ),
     _number("normal", "force", "compression N", "N"),
     _number("shear", "force", "shear s of the first block on the second, towards end 2", "s"),
