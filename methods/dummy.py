@@ -15,7 +15,7 @@ from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Method, OutOfTime, Settings, Status
 
 
-class _DummySettings(Settings):
+class DummySettings(Settings):
     """What it shall do."""
 
     does: Literal[
@@ -42,9 +42,9 @@ class Dummy(Method):
     family = "dummy"
     title = "misbehaves on order (tests of the engine)"
     tolerance = 1e-9
-    Settings = _DummySettings
+    Settings = DummySettings
 
-    def solve(self, assembly: Assembly, settings: _DummySettings) -> Answer:
+    def solve(self, assembly: Assembly, settings: DummySettings) -> Answer:
         """Do what the settings say."""
         match settings.does:
             case "raise":
@@ -78,7 +78,7 @@ class Dummy(Method):
                 print("noise on standard error", file=sys.stderr)
         return self._answer(assembly, settings)
 
-    def _answer(self, assembly: Assembly, settings: _DummySettings) -> Answer:
+    def _answer(self, assembly: Assembly, settings: DummySettings) -> Answer:
         answer = Answer(Status.OK, Finding.COLLAPSES, "An answer made up for a test.", multiplier=1.0)
         answer.forces = np.zeros((assembly.n_interfaces, 3))
         answer.mechanism = np.zeros((assembly.n_blocks, 3))

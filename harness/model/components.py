@@ -24,9 +24,9 @@ from harness.model.method import Answer, Finding, Status
 _NAMED = 8
 """Blocks of a component that are named at most."""
 
-_Solve = Callable[[Assembly], Answer]
+Solve = Callable[[Assembly], Answer]
 """The answer of a method for one component."""
-_Bear = Callable[[Assembly, Answer, float], "FloatArray | None"]
+Bear = Callable[[Assembly, Answer, float], "FloatArray | None"]
 """Contact forces (m, 3) of a component within yield at a multiplier of the live load, or None if none are found.
 
 Its arguments: the component; the method's answer for it; the multiplier, which is no higher than the answer's own.
@@ -104,7 +104,7 @@ def joints_of(part: Assembly, whole: Assembly) -> IntArray:
     return np.flatnonzero(own[whole.block_a] | own[whole.block_b])
 
 
-def analysed_apart(assembly: Assembly, solve: _Solve, bear: _Bear) -> Answer:
+def analysed_apart(assembly: Assembly, solve: Solve, bear: Bear) -> Answer:
     """The answer for a wall from those for its components, each analysed alone.
 
     The smallest come first, so that a run that is stopped knows as much as it can. After one that was stopped by the
@@ -143,7 +143,7 @@ def _not_reached(part: Component) -> Answer:
     return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
 
 
-def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], bear: _Bear) -> Answer:
+def joined(assembly: Assembly, parts: list[Component], answers: list[Answer], bear: Bear) -> Answer:
     """The answer for the whole wall: falls if a component does, else the least multiplier, else unbounded or stands.
 
     Args:
@@ -193,7 +193,7 @@ def _upper_end(answer: Answer) -> float:
 
 
 def _with_forces(
-    assembly: Assembly, parts: list[Component], answers: list[Answer], deciding: int, answer: Answer, bear: _Bear
+    assembly: Assembly, parts: list[Component], answers: list[Answer], deciding: int, answer: Answer, bear: Bear
 ) -> Answer:
     """The answer with contact forces of every component at the multiplier of the deciding one's forces.
 

@@ -10,8 +10,8 @@ from functools import lru_cache
 from itertools import accumulate, islice
 from typing import TypeVar
 
-_Item = TypeVar("_Item")
-_Made = TypeVar("_Made")
+Item = TypeVar("Item")
+Made = TypeVar("Made")
 
 _MOST_FAULTS = 100
 """Lines about one file that are printed; the rest are counted."""
@@ -177,7 +177,7 @@ def in_file(source: str) -> Iterator[None]:
         raise
 
 
-def of_each(make: Callable[[_Item], _Made], items: Iterable[_Item]) -> list[_Made]:
+def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:
     """What is made of every item; the faults of all items are reported together.
 
     Raises:
@@ -188,10 +188,10 @@ def of_each(make: Callable[[_Item], _Made], items: Iterable[_Item]) -> list[_Mad
     return list(made.values())
 
 
-def sorted_out(make: Callable[[_Item], _Made], items: Iterable[_Item]) -> tuple[list[InputError], dict[int, _Made]]:
+def sorted_out(make: Callable[[Item], Made], items: Iterable[Item]) -> tuple[list[InputError], dict[int, Made]]:
     """The faults of items that nothing can be made of, and what is made of the others, by their numbers."""
     faults: list[InputError] = []
-    made: dict[int, _Made] = {}
+    made: dict[int, Made] = {}
     for number, item in enumerate(items):
         try:
             made[number] = make(item)

@@ -23,7 +23,7 @@ from harness.model.method import Answer, Finding, Status
 
 COUNTABLE = 1e100
 """Largest number of an answer: sums of products of such numbers are finite, so that no residual is lost in them."""
-_Number = Annotated[float, Field(strict=True, ge=-COUNTABLE, le=COUNTABLE)]
+Number = Annotated[float, Field(strict=True, ge=-COUNTABLE, le=COUNTABLE)]
 
 
 def _floats(axes: str) -> PlainValidator:
@@ -120,7 +120,7 @@ class DrivenWall(InDetails):
     """
 
     NAME = "driven"
-    reaction: _Number
+    reaction: Number
     forces: Annotated[FloatArray, _floats("m3")]
     tensions: Annotated[FloatArray, _floats("b")]
     mechanism: Annotated[FloatArray, _floats("n3")]
@@ -151,7 +151,7 @@ class FollowedWall(InDetails):
     forces: Annotated[FloatArray, _floats("km3")]
     mechanisms: Annotated[FloatArray, _floats("kn3")]
     closed: Annotated[BoolArray, _truths("m2")]
-    falls: _Number | None
+    falls: Number | None
     fallen: Annotated[FloatArray, _floats("n3")] | None
     falling: Annotated[FloatArray, _floats("n3")] | None
     reason: StrictStr
@@ -179,7 +179,7 @@ class SupportPath(InDetails):
     opened: Annotated[IntArray, _integers("k")]
     forces: Annotated[FloatArray, _floats("m3")]
     mechanism: Annotated[FloatArray, _floats("n3")] | None
-    constant_from: _Number | None
+    constant_from: Number | None
     reason: StrictStr
 
 
@@ -214,11 +214,11 @@ class ShakenWall(InDetails):
     NAME = "shaken"
     time: Annotated[FloatArray, _floats("k")]
     places: Annotated[FloatArray, _floats("kn3")]
-    energy: _Number | None
+    energy: Number | None
     fallen: Annotated[BoolArray, _truths("n")]
     at_rest: StrictBool
     engine: StrictStr
-    impact: _Number
+    impact: Number
 
 
 def check_followed(details: dict[str, Any], assembly: Assembly) -> None:

@@ -45,7 +45,7 @@ After = Annotated[
 ]
 
 
-class _JointStrength(Protocol):
+class JointStrength(Protocol):
     """Whatever gives the strength of joints beside their friction: a wall, friction, a rule, an interface."""
 
     @property
@@ -65,24 +65,24 @@ class _JointStrength(Protocol):
         """What is left of cohesion and tensile strength in a joint that has opened or slipped."""
 
 
-def stresses_of(given: _JointStrength) -> tuple[float, float, float]:
+def stresses_of(given: JointStrength) -> tuple[float, float, float]:
     """Cohesion, tensile, compressive strength [force/length^2]: zero, and the last infinite, where none is given."""
     crushing = given.compressive_strength
     return given.cohesion or 0.0, given.tensile_strength or 0.0, math.inf if crushing is None else crushing
 
 
-def is_brittle(given: _JointStrength) -> bool:
+def is_brittle(given: JointStrength) -> bool:
     """Whether joints lose their cohesion and tensile strength once they have opened or slipped."""
     return given.after == "residual"
 
 
-def gives_strength(given: _JointStrength) -> bool:
+def gives_strength(given: JointStrength) -> bool:
     """Whether any strength is given."""
     strengths = given.cohesion, given.tensile_strength, given.compressive_strength, given.after
     return any(value is not None for value in strengths)
 
 
-def check_strength(given: _JointStrength, friction: float) -> None:
+def check_strength(given: JointStrength, friction: float) -> None:
     """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
     cohesion, tension, _ = stresses_of(given)
     if is_brittle(given) and cohesion == tension == 0.0:

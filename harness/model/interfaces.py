@@ -23,7 +23,7 @@ _LEAST_CONTACT = 0.01
 """Least length of a contact, in typical block sizes, where the gap may be larger: 3 mm on a brick of 300."""
 
 
-_Faces = tuple[IntArray, IntArray, FloatArray, FloatArray]
+Faces = tuple[IntArray, IntArray, FloatArray, FloatArray]
 """Blocks (m,) and (m,), and ends of the faces (m, 2) and (m, 2) [length], of interfaces."""
 
 
@@ -108,7 +108,7 @@ def joints_of(
     )
 
 
-def faces_of(joints: Joints, index: dict[str, int], fixed: np.ndarray) -> _Faces:
+def faces_of(joints: Joints, index: dict[str, int], fixed: np.ndarray) -> Faces:
     """Blocks and faces of interfaces.
 
     Raises:
@@ -145,7 +145,7 @@ def faults_of_given(joints: Joints, index: dict[str, int], fixed: np.ndarray) ->
     return faults
 
 
-def check_single(names: Sequence[str], fixed: BoolArray, laid: _Faces, most: float) -> None:
+def check_single(names: Sequence[str], fixed: BoolArray, laid: Faces, most: float) -> None:
     """Refuse two joints on one stretch of a free block: it would bear the strength of both, which is there once.
 
     Args:

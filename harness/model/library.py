@@ -12,10 +12,10 @@ from harness.model.fields import Strict
 from harness.model.json_text import read_toml
 from harness.model.reading import validate
 
-_Words = TypeVar("_Words", bound=Strict)
+Words = TypeVar("Words", bound=Strict)
 
 
-class _DefaultMethods(Strict):
+class DefaultMethods(Strict):
     """Names of the methods that are asked where nobody names any."""
 
     compare: Annotated[tuple[str, ...], Field(min_length=1, description="of a comparison, besides those of references")]
@@ -28,7 +28,7 @@ class Library(Strict):
     """The content of `library.toml`."""
 
     families: dict[str, str] = Field(description="titles of families, in the order of tables")
-    methods: _DefaultMethods
+    methods: DefaultMethods
     settings: dict[str, str] = Field(description="METHOD.NAME of settings that studies call by a short name")
 
     def family_title(self, family: str, method: str) -> str:
@@ -41,7 +41,7 @@ class Library(Strict):
         return (known.index(family) if family in known else len(known), method != family, method)
 
 
-def shipped_words(kind: type[_Words], name: str) -> _Words:
+def shipped_words(kind: type[Words], name: str) -> Words:
     """The content of a TOML file that stands beside the cases."""
     path = shipped_cases() / name
     return validate(kind, read_toml(path), str(path))

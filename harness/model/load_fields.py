@@ -56,7 +56,7 @@ def _is_no_size(value: Any) -> Any:
     return value
 
 
-_Gravity = Annotated[
+Gravity = Annotated[
     Annotated[Point, Tag(MANY)] | Annotated[StrictBool, Tag(OTHER)],
     Discriminator(_vector_or_switch),
     BeforeValidator(_is_no_size),
@@ -66,7 +66,7 @@ _Gravity = Annotated[
 class Loads(Strict):
     """Gravity, dead load (both present at every multiplier) and live load (multiplied)."""
 
-    gravity: _Gravity | None = Field(
+    gravity: Gravity | None = Field(
         None, description="on every block; absent or true: [0, -1] times its weight; false: none; [x, y]: so much of it"
     )
     dead: Load = Field(default_factory=Load, description="on top of gravity")

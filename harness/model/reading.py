@@ -19,7 +19,7 @@ from harness.model.names import faults_of_data
 from harness.model.scope import SCOPE, outside_the_model
 from harness.model.wall import Wall
 
-_ModelType = TypeVar("_ModelType", bound=BaseModel)
+ModelType = TypeVar("ModelType", bound=BaseModel)
 
 _PLAIN = {
     "missing": "it is missing",
@@ -43,8 +43,8 @@ _SHAPES = ("missing", "tuple_type", "list_type", "dict_type", "model_type", "mod
 
 
 def validate(
-    model: type[_ModelType], data: Any, source: str, more: Callable[[Any], list[InputError]] = lambda data: []
-) -> _ModelType:
+    model: type[ModelType], data: Any, source: str, more: Callable[[Any], list[InputError]] = lambda data: []
+) -> ModelType:
     """Data as a model.
 
     Args:

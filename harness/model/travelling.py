@@ -28,7 +28,7 @@ _LEVEL = 1e-6
 _MOST_READ = 2_000_000
 """Vertices of blocks that touch faces and are compared with them, a few seconds of work."""
 
-_Face = tuple[int, FloatArray, FloatArray]
+Face = tuple[int, FloatArray, FloatArray]
 """A block and the two ends (2,) of a face of it, from left to right."""
 
 
@@ -43,7 +43,7 @@ class Upward:
     def __init__(self, blocks: Sequence[Block], polygons: Sequence[FloatArray], gravity: Point) -> None:
         self._blocks, self._to_up = blocks, _to_up(gravity)
         self._polygons = [polygon @ self._to_up.T for polygon in polygons]
-        self._found: dict[str, list[_Face]] = {}
+        self._found: dict[str, list[Face]] = {}
 
     def loads(self, given: Travelling, place: str, most: int) -> list[Loads]:
         """A live load for each place of a travelling load, from left to right as gravity has it.
@@ -75,7 +75,7 @@ class Upward:
                 found.append(Loads(live=Load(points=[force])))
         return found
 
-    def _faces(self, given: Travelling) -> list[_Face]:
+    def _faces(self, given: Travelling) -> list[Face]:
         """The faces that a travelling load acts on, from left to right."""
         if given.along not in self._found:
             free = [k for k, block in enumerate(self._blocks) if not block.fixed]
@@ -97,7 +97,7 @@ def _to_up(gravity: Point) -> FloatArray:
     return np.array([[-y, x], [-x, -y]])
 
 
-def upward_faces(polygons: Sequence[FloatArray], chosen: Iterable[int], *, from_above: bool) -> list[_Face]:
+def upward_faces(polygons: Sequence[FloatArray], chosen: Iterable[int], *, from_above: bool) -> list[Face]:
     """The parts of edges of the chosen blocks that look towards +y and touch no other block.
 
     Args:

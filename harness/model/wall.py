@@ -216,11 +216,11 @@ class Settlement(Strict):
         return self
 
 
-_Patterns = Annotated[Annotated[Pattern, Tag(ONE)] | Annotated[list[Pattern], Tag(MANY)], Discriminator(_one_or_many)]
-_FrictionOfWall = Annotated[
+Patterns = Annotated[Annotated[Pattern, Tag(ONE)] | Annotated[list[Pattern], Tag(MANY)], Discriminator(_one_or_many)]
+FrictionOfWall = Annotated[
     Annotated[Coefficient, Tag(OTHER)] | Annotated[Friction, Tag(OBJECT)], Discriminator(_object_or_other)
 ]
-_Interfaces = Annotated[
+Interfaces = Annotated[
     Annotated[list[Interface], Tag(OTHER)] | Annotated[Detection, Tag(OBJECT)], Discriminator(_object_or_other)
 ]
 
@@ -240,15 +240,15 @@ class Wall(Strict):
     )
     unit_weight: NonNegative | None = Field(None, description="[force/length^3] for blocks that give no weight")
     thickness: Positive | None = Field(None, description="out of plane [length]; one metre if absent")
-    friction: _FrictionOfWall | None = Field(None, description="coefficient of friction, tan(phi), or rules")
+    friction: FrictionOfWall | None = Field(None, description="coefficient of friction, tan(phi), or rules")
     friction_angle: Angle | None = Field(None, description="phi [degrees], instead of `friction`")
     cohesion: Cohesion = None
     tensile_strength: TensileStrength = None
     compressive_strength: CompressiveStrength = None
     after: After = None
-    pattern: _Patterns | None = None
+    pattern: Patterns | None = None
     blocks: list[Block] = Field(default_factory=list)
-    interfaces: _Interfaces = Field(default_factory=Detection)
+    interfaces: Interfaces = Field(default_factory=Detection)
     contact_inset: Inset | None = None
     loads: Loads = Field(default_factory=Loads)
     load_cases: dict[str, Loads] = Field(

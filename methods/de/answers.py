@@ -24,14 +24,14 @@ _BRACKET_MEANING = (
     "lower end and moved at or below the upper end"
 )
 
-_EngineMaker = Callable[[IntArray, IntArray, MassScaling], Engine]
+EngineMaker = Callable[[IntArray, IntArray, MassScaling], Engine]
 """From free blocks and interfaces in insertion order and a tuning to an engine that holds the wall."""
 
 
 def solve_by_holds(
     assembly: Assembly,
     settings: HoldSettings,
-    make_engine: _EngineMaker,
+    make_engine: EngineMaker,
     tolerance: float,
     candidates: list[MassScaling] | None = None,
 ) -> Answer:

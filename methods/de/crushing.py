@@ -22,7 +22,7 @@ from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 
 
 @dataclass(frozen=True)
-class _HeldStrips:
+class HeldStrips:
     """When the brackets of walls that are set in end.
 
     Attributes:
@@ -37,7 +37,7 @@ class _HeldStrips:
 
 
 def held_by_strips(
-    assembly: Assembly, solve: Callable[[Assembly], Answer], options: _HeldStrips = _HeldStrips()
+    assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldStrips = HeldStrips()
 ) -> Answer:
     """The answer for a component whose joints crush; `solve` answers for walls that are set in and do not crush."""
     share = stood = np.zeros(assembly.n_interfaces)

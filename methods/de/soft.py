@@ -37,7 +37,7 @@ ROUNDING = 2e-4
 
 
 @dataclass(frozen=True)
-class _SoftHoldTuning:
+class SoftHoldTuning:
     """Holds of a wall with deformable joints.
 
     Attributes:
@@ -76,7 +76,7 @@ class Holds:
     fell: float | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
-    options: _SoftHoldTuning = _SoftHoldTuning()
+    options: SoftHoldTuning = SoftHoldTuning()
 
     def __post_init__(self) -> None:
         """The wall as it is."""

@@ -26,7 +26,7 @@ from methods.springs.path.path_record import PathRecord
 
 
 @dataclass(frozen=True)
-class _TrescaTuning:
+class TrescaTuning:
     """How the multiplier marches up, and how friction limits are iterated.
 
     Attributes:
@@ -181,7 +181,7 @@ def bracket_collapse(
     resolution: float,
     fixed_points: int,
     accuracy: float = 1e-6,
-    options: _TrescaTuning = _TrescaTuning(),
+    options: TrescaTuning = TrescaTuning(),
 ) -> ConvexResult:
     """March the multiplier up and bisect the step at which the fixed point is lost.
 
@@ -235,7 +235,7 @@ def _settle(
     multiplier: float,
     limit: FloatArray,
     count: int,
-    options: _TrescaTuning,
+    options: TrescaTuning,
     share: float = 1.0,
 ) -> FloatArray | None:
     """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken.

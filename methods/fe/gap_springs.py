@@ -42,7 +42,7 @@ load_kernels()
 
 
 @dataclass(frozen=True)
-class _BreakpointLimits:
+class BreakpointLimits:
     """Events up to which histories are traced, and how many histories there are.
 
     Attributes:
@@ -74,7 +74,7 @@ class GapSprings(Solver):
     """
 
     def __init__(
-        self, limits: _BreakpointLimits = _BreakpointLimits(), histories: HistoryTuning = HistoryTuning()
+        self, limits: BreakpointLimits = BreakpointLimits(), histories: HistoryTuning = HistoryTuning()
     ) -> None:
         self._limits, self._histories = limits, histories
 
@@ -167,7 +167,7 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
     return single_state_answer(model, result.state, sentence, result.record, details, result.iterations)
 
 
-def _chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: _BreakpointLimits) -> tuple[float, ...]:
+def _chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: BreakpointLimits) -> tuple[float, ...]:
     """The commit intervals to run: as set, or by the size of the wall; none where joints dilate."""
     if settings.histories is not None:
         return settings.histories

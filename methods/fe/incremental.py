@@ -24,7 +24,7 @@ from methods.springs.rest.newton import Equilibrium, newton, settled
 
 
 @dataclass(frozen=True)
-class _LoadControl:
+class LoadControl:
     """Steps of the multiplier.
 
     Attributes:
@@ -41,7 +41,7 @@ class _LoadControl:
 
 
 @dataclass(frozen=True)
-class _DisplacementControl:
+class DisplacementControl:
     """Steps of a prescribed displacement.
 
     Attributes:
@@ -98,8 +98,8 @@ def march(
     first_step: float,
     cuts: int,
     displacement_steps: int,
-    loads: _LoadControl = _LoadControl(),
-    displacements: _DisplacementControl = _DisplacementControl(),
+    loads: LoadControl = LoadControl(),
+    displacements: DisplacementControl = DisplacementControl(),
 ) -> IncrementalResult:
     """Load control from gravity, then displacement control.
 
@@ -147,7 +147,7 @@ def _displacement_control(
     travel: FloatArray,
     steps: int,
     record: PathRecord,
-    options: _DisplacementControl,
+    options: DisplacementControl,
 ) -> tuple[PlateauState | None, float, int]:
     """The collapse state that displacement control leads to, or None; the last multiplier; Newton iterations.
 
@@ -199,7 +199,7 @@ def _farthest(motion: FloatArray) -> FloatArray:
 
 
 def _controlled(
-    model: WallModel, factor: Factor, point: _StepPoint, control: FloatArray, goal: float, options: _DisplacementControl
+    model: WallModel, factor: Factor, point: _StepPoint, control: FloatArray, goal: float, options: DisplacementControl
 ) -> tuple[_StepPoint | None, int]:
     """Equilibrium at a prescribed displacement control'u = goal, None where Newton finds none; and its iterations."""
     u, multiplier, state = point.u, point.multiplier, point.state

@@ -45,7 +45,7 @@ _WHY = {
 
 
 @dataclass(frozen=True, eq=False)
-class _StandingState:
+class StandingState:
     """A wall that has moved, and how it would move on.
 
     Attributes:
@@ -60,7 +60,7 @@ class _StandingState:
     mechanism: FloatArray
 
 
-_StateOf = Callable[[MovedWall], _StandingState | str]
+StateOf = Callable[[MovedWall], StandingState | str]
 """The state of a wall where it is, or a word for why there is none; `STUCK` where that is no fall."""
 
 
@@ -75,20 +75,20 @@ class SettledUntil:
         reason: why the wall was followed no further; empty where it falls.
     """
 
-    points: tuple[_StandingState, ...]
+    points: tuple[StandingState, ...]
     fall: MovedWall | None
     mechanism: FloatArray | None
     reason: str
 
 
-def _with_least_reaction(wall: MovedWall) -> _StandingState | str:
+def _with_least_reaction(wall: MovedWall) -> StandingState | str:
     """The least reaction of a wall as it stands, or how the programme ended."""
     found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
-    return found if isinstance(found, str) else _StandingState(wall, found.reaction, found.forces, found.mechanism)
+    return found if isinstance(found, str) else StandingState(wall, found.reaction, found.forces, found.mechanism)
 
 
 def settle(
-    start: MovedWall, steps: SettlingSteps = SettlingSteps(), state_of: _StateOf = _with_least_reaction
+    start: MovedWall, steps: SettlingSteps = SettlingSteps(), state_of: StateOf = _with_least_reaction
 ) -> SettledUntil | str:
     """Move the wall along its mechanisms until it falls; or how the first programme ended without a solution.
 
@@ -144,11 +144,11 @@ class _Failure:
 
     kind: str
     wall: MovedWall
-    start: _StandingState
+    start: StandingState
     step: float
 
 
-def _held(now: _StandingState, moves: float) -> tuple[BoolArray, str]:
+def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
     """(m, 2) ends of joints that go on to meet, and the blocks of one that slides under force or touching, if any."""
     assembly, mechanism = now.wall.assembly, now.mechanism
     rates = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3) + assembly.support_strains
@@ -163,8 +163,8 @@ def _held(now: _StandingState, moves: float) -> tuple[BoolArray, str]:
 
 
 def _tried(
-    now: _StandingState, step: float, held: BoolArray, closure: ClosureTolerances, state_of: _StateOf
-) -> _StandingState | _Failure:
+    now: StandingState, step: float, held: BoolArray, closure: ClosureTolerances, state_of: StateOf
+) -> StandingState | _Failure:
     """The wall after a step, or why the step is too long."""
     wall = now.wall.moved(now.mechanism, step, held, closure)
     if wall is None:
@@ -178,23 +178,23 @@ def _tried(
 
 
 def _advanced(
-    now: _StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances, state_of: _StateOf
-) -> tuple[_StandingState, _Failure | None]:
+    now: StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances, state_of: StateOf
+) -> tuple[StandingState, _Failure | None]:
     """The wall after a step; or, where that is too long, after the longest that is not, with why it is the longest."""
     found = _tried(now, step, held, closure, state_of)
-    if isinstance(found, _StandingState):
+    if isinstance(found, StandingState):
         return found, None
     best, low, high = now, 0.0, found
     while high.step - low > width:
         middle = _tried(now, 0.5 * (low + high.step), held, closure, state_of)
-        if isinstance(middle, _StandingState):
+        if isinstance(middle, StandingState):
             best, low = middle, middle.wall.displacement - now.wall.displacement
         else:
             high = middle
     return best, high
 
 
-def _fallen(points: list[_StandingState], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
+def _fallen(points: list[StandingState], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
     """The end of a wall that falls, at the least displacement beyond its last at which a mechanism proves it.
 
     The programme may find no forces a hair before a mechanism does work beyond rounding.
@@ -238,7 +238,7 @@ def _falling(wall: MovedWall, immense: float) -> FloatArray | None:
     return mechanism
 
 
-def with_multiplier(wall: MovedWall) -> _StandingState | str:
+def with_multiplier(wall: MovedWall) -> StandingState | str:
     """The greatest multiplier of a wall as it stands, and its mechanism with a fastest vertex of speed one.
 
     Returns:
@@ -257,6 +257,6 @@ def with_multiplier(wall: MovedWall) -> _StandingState | str:
         return FALLS
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = problem.velocities_of_blocks(found.kinematics.velocities)
-    return _StandingState(
+    return StandingState(
         wall, multiplier, problem.to_forces(found.statics.forces), mechanism / fastest_vertex(assembly, mechanism)
     )

@@ -20,7 +20,7 @@ from methods.numerics.block_kernels import factorise, substitute, substitute_man
 
 
 @dataclass(frozen=True)
-class _Supernodes:
+class Supernodes:
     """Which columns of a factor are kept together.
 
     Attributes:
@@ -45,7 +45,7 @@ class BlockPattern:
         offset: (k + 1,) where its values start; diagonal: (3 n,) where the entries of the diagonal are.
     """
 
-    def __init__(self, first: IntArray, second: IntArray, n: int, supernodes: _Supernodes = _Supernodes()) -> None:
+    def __init__(self, first: IntArray, second: IntArray, n: int, supernodes: Supernodes = Supernodes()) -> None:
         """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in _postorder."""
         below, _ = _fill(first, second, n)
         start, rows = _supernodes(below, supernodes)
@@ -164,7 +164,7 @@ def _fill(first: IntArray, second: IntArray, n: int) -> tuple[list[set[int]], li
     return below, parent
 
 
-def _supernodes(below: list[set[int]], options: _Supernodes) -> tuple[list[int], list[list[int]]]:
+def _supernodes(below: list[set[int]], options: Supernodes) -> tuple[list[int], list[list[int]]]:
     """Gather columns (whose rows are given) into supernodes: the first column of each and its end, and its rows."""
     start, rows, true = [0], [below[0]], [len(below[0])]
     for j in range(1, len(below)):

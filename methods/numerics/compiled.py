@@ -13,13 +13,13 @@ import numba
 from numba.core import types
 from numba.extending import lower_builtin, type_callable
 
-_AnyFunction = TypeVar("_AnyFunction", bound=Callable[..., Any])
+AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 
 _LOOSELY = {"reassoc", "contract", "nsz"}
 """What `compiled_loosely` allows of LLVM."""
 
 
-def compiled(function: _AnyFunction) -> _AnyFunction:
+def compiled(function: AnyFunction) -> AnyFunction:
     """Compile a function of arrays on its first call, and keep its code on disk if a folder takes it.
 
     Numba keeps its code beside the source or, where that is read-only, in the user's cache folder. Where neither can
@@ -28,7 +28,7 @@ def compiled(function: _AnyFunction) -> _AnyFunction:
     return _compile(function, fastmath=False)
 
 
-def compiled_loosely(function: _AnyFunction) -> _AnyFunction:
+def compiled_loosely(function: AnyFunction) -> AnyFunction:
     """As `compiled`, with sums in whatever order is fastest; zeros keep no sign, infinities and NaN stay what they are.
 
     The order is fixed when the code is compiled, so runs on one machine repeat bit by bit.
@@ -36,9 +36,9 @@ def compiled_loosely(function: _AnyFunction) -> _AnyFunction:
     return _compile(function, fastmath=_LOOSELY)
 
 
-def _compile(function: _AnyFunction, fastmath: Any) -> _AnyFunction:
+def _compile(function: AnyFunction, fastmath: Any) -> AnyFunction:
     try:
-        kernel: _AnyFunction = numba.njit(cache=True, fastmath=fastmath)(function)
+        kernel: AnyFunction = numba.njit(cache=True, fastmath=fastmath)(function)
     except RuntimeError:  # numba's word for "no folder takes the cache"
         kernel = numba.njit(fastmath=fastmath)(function)
     return kernel

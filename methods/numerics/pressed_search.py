@@ -20,7 +20,7 @@ from methods.numerics.pressed_state import PressedState, exact_state, moving_row
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 from methods.numerics.stress_blocks import greatest_by_chords
 
-_Solve = Callable[[Assembly], Answer]
+Solve = Callable[[Assembly], Answer]
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class StripTolerances:
     least: bool = False
 
 
-def by_strips(assembly: Assembly, solve: _Solve, options: StripTolerances = StripTolerances()) -> Answer:
+def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = StripTolerances()) -> Answer:
     """The answer for a component whose joints crush; where the time is over, that with the least state known.
 
     Args:
@@ -69,7 +69,7 @@ class _StateOfStrips:
     answer: Answer
 
 
-def _to_its_end(assembly: Assembly, solve: _Solve, options: StripTolerances, found: list[_StateOfStrips]) -> Answer:
+def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, found: list[_StateOfStrips]) -> Answer:
     """As `by_strips`, in as many rounds as there may be; `found` gets the exact states."""
     share = stood = np.zeros(assembly.n_interfaces)
     way, distance = 1.0, np.inf

@@ -24,7 +24,7 @@ from methods.numerics.pressed_strips import pressed_shares
 
 
 @dataclass(frozen=True)
-class _StateTolerances:
+class StateTolerances:
     """When the forces of a state are exact.
 
     Attributes:
@@ -47,7 +47,7 @@ class PressedState:
     mechanism: FloatArray
 
 
-def moving_rows(wall: Assembly, mechanism: FloatArray, options: _StateTolerances = _StateTolerances()) -> BoolArray:
+def moving_rows(wall: Assembly, mechanism: FloatArray, options: StateTolerances = StateTolerances()) -> BoolArray:
     """(m, 4) rows of the joint law along which the joints of a wall move in a mechanism (n, 3)."""
     strains = (wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3)
     rates = wall.law.rates(strains)
@@ -55,7 +55,7 @@ def moving_rows(wall: Assembly, mechanism: FloatArray, options: _StateTolerances
 
 
 def exact_state(
-    assembly: Assembly, forces: FloatArray, moving: BoolArray, options: _StateTolerances = _StateTolerances()
+    assembly: Assembly, forces: FloatArray, moving: BoolArray, options: StateTolerances = StateTolerances()
 ) -> PressedState | None:
     """The collapse state in which the rows `moving` (m, 4) move, with forces near these (m, 3); None without any."""
     known = forces
@@ -86,7 +86,7 @@ def _tangents(assembly: Assembly, share: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def held_forces(
-    assembly: Assembly, forces: FloatArray, multiplier: float, options: _StateTolerances = _StateTolerances()
+    assembly: Assembly, forces: FloatArray, multiplier: float, options: StateTolerances = StateTolerances()
 ) -> FloatArray | None:
     """The contact forces (m, 3) within the stress blocks that bear a multiplier, near others; None without any."""
     known, rests = forces, np.zeros((assembly.n_interfaces, 4), dtype=bool)

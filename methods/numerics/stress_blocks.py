@@ -26,7 +26,7 @@ from methods.numerics.shear_rows import COST, least_shear_slacks, rows_of_blocks
 
 
 @dataclass(frozen=True)
-class _ChordTolerances:
+class ChordTolerances:
     """How points on the parabolas are added.
 
     Attributes:
@@ -82,7 +82,7 @@ def greatest_by_chords(
     dead: FloatArray,
     live: FloatArray,
     most: float = np.inf,
-    options: _ChordTolerances = _ChordTolerances(),
+    options: ChordTolerances = ChordTolerances(),
 ) -> BlockLimit:
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by linear programmes with a known gap."""
     programme = _LineProgramme(assembly, dead, live, most, options)
@@ -135,7 +135,7 @@ class _LineProgramme:
     """Statics of a wall with lines in place of the parabolas of its k joints that crush; two ends a joint, 2k ends."""
 
     def __init__(
-        self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float, options: _ChordTolerances
+        self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float, options: ChordTolerances
     ) -> None:
         self._options = options
         self._assembly, m, n = assembly, assembly.n_interfaces, assembly.n_free

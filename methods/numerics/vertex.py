@@ -24,7 +24,7 @@ from methods.numerics.silent_highs import SilentHighs
 
 
 @dataclass(frozen=True)
-class _VertexTolerances:
+class VertexTolerances:
     """How a vertex is refined, and what is rounding in it.
 
     Attributes:
@@ -106,7 +106,7 @@ class StandardForm:
         column: tuple[FloatArray, FloatArray],
         row: tuple[FloatArray, FloatArray],
         groups: IntArray | None = None,
-        tolerances: _VertexTolerances = _VertexTolerances(),
+        tolerances: VertexTolerances = VertexTolerances(),
     ) -> None:
         self._tolerances = tolerances
         self._rows, self._columns = matrix.shape

@@ -31,7 +31,7 @@ _CONTACT = "zeroLengthContactASDimplex"
 
 
 @dataclass(frozen=True)
-class _OpenSeesTuning:
+class OpenSeesTuning:
     """What is not for the user of OpenSees to choose.
 
     Attributes:
@@ -58,7 +58,7 @@ class _ContactModel:
         options: as above.
     """
 
-    def __init__(self, assembly: Assembly, settings: OpenSeesSettings, options: _OpenSeesTuning) -> None:
+    def __init__(self, assembly: Assembly, settings: OpenSeesSettings, options: OpenSeesTuning) -> None:
         self._ops = ops = _load_opensees()
         self._options, self._stiffness = options, settings.stiffness
         self.assembly, self._free = assembly, assembly.free.tolist()
@@ -183,7 +183,7 @@ class OpenSeesContacts(Solver):
         options: of the model.
     """
 
-    def __init__(self, options: _OpenSeesTuning = _OpenSeesTuning()) -> None:
+    def __init__(self, options: OpenSeesTuning = OpenSeesTuning()) -> None:
         self._options = options
 
     def solve(self, assembly: Assembly, settings: OpenSeesSettings) -> Answer:

@@ -17,11 +17,11 @@ from reports.figures.plot import plot
 _BEYOND = 1.5
 """Multiple of the displacement from which the last reaction is constant, up to which paths are drawn."""
 
-_Curve = tuple[str, FloatArray, FloatArray, float | None]
+Curve = tuple[str, FloatArray, FloatArray, float | None]
 """A name, displacements (k,), reactions (k,), and the displacement from which the reaction is constant."""
 
 
-def reaction_figure(curves: Sequence[_Curve], extremes: tuple[float, float], head: str) -> Figure:
+def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head: str) -> Figure:
     """Reactions against displacements [length] of supports, between the extremes of associated flow.
 
     Args:

@@ -158,7 +158,7 @@ def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) ->
 
 
 @dataclass(frozen=True)
-class _Arrow:
+class Arrow:
     """A load on a block, drawn at the point its line of action passes through.
 
     Attributes:
@@ -172,7 +172,7 @@ class _Arrow:
     force: FloatArray
 
 
-def load_arrows(assembly: Assembly, load: FloatArray) -> list[_Arrow]:
+def load_arrows(assembly: Assembly, load: FloatArray) -> list[Arrow]:
     """Generalised loads (n, 3) as arrows: at the centroid, or where their moment puts the line of action."""
     arrows = []
     largest = float(np.linalg.norm(load[:, :2], axis=1).max(initial=0.0))
@@ -182,7 +182,7 @@ def load_arrows(assembly: Assembly, load: FloatArray) -> list[_Arrow]:
         if largest == 0.0 or square <= (1e-9 * largest) ** 2:
             continue
         arm = moment / square * np.array([force[1], -force[0]])
-        arrows.append(_Arrow(block, assembly.centroid[block] + arm, force))
+        arrows.append(Arrow(block, assembly.centroid[block] + arm, force))
     return arrows
 
 

@@ -66,7 +66,7 @@ class _PrintedApplication(Strict):
     rows: list[_PrintedApplicationRow]
 
 
-class _Printed(Strict):
+class Printed(Strict):
     """The content of `cases/paper.toml`."""
 
     block: _PrintedBlock
@@ -80,9 +80,9 @@ class _Printed(Strict):
 
 
 @cache
-def printed() -> _Printed:
+def printed() -> Printed:
     """What the paper prints, read once."""
-    return shipped_words(_Printed, "paper.toml")
+    return shipped_words(Printed, "paper.toml")
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class _CostRow:
 
 
 @dataclass(frozen=True)
-class _Paper:
+class Paper:
     """What the report shows of the paper."""
 
     block: list[_BlockRow]
@@ -125,7 +125,7 @@ class _Paper:
     experiment: str
     imperfection: str
     applied: list[str]
-    applications: list[_ApplicationRow]
+    applications: list[ApplicationRow]
 
 
 def _find(run: ComparisonRun, case: str) -> tuple[int, CaseResults] | None:
@@ -136,7 +136,7 @@ def _result(item: CaseResults, method: str) -> tuple[int, Result] | None:
     return next(((number, result) for number, result in enumerate(item.results) if result.method == method), None)
 
 
-def paper_comparison(run: ComparisonRun) -> _Paper | None:
+def paper_comparison(run: ComparisonRun) -> Paper | None:
     """The paper's two tables beside ours, or None if neither of its cases was run."""
     said = printed()
     block, wall = _find(run, said.block.case), _find(run, said.wall.case)
@@ -145,7 +145,7 @@ def paper_comparison(run: ComparisonRun) -> _Paper | None:
     cost = [] if wall is None else _cost(*wall)
     times = {row.method: row.cpu.sort for row in cost if row.cpu.sort}
     earlier = {row.method: row.until_value for row in cost if row.until_value is not None}
-    return _Paper(
+    return Paper(
         block=[] if block is None else _block(*block),
         cost=cost,
         names=" : ".join(row.method.upper() for row in said.wall.rows),
@@ -268,7 +268,7 @@ def _to_value(item: CaseResults, method: str) -> float | None:
 
 
 @dataclass(frozen=True)
-class _ApplicationRow:
+class ApplicationRow:
     """What a wall of the paper's application carries: the paper's text, and ours by method."""
 
     number: int
@@ -277,7 +277,7 @@ class _ApplicationRow:
     ours: list[Cell]
 
 
-def applications(run: ComparisonRun) -> list[_ApplicationRow]:
+def applications(run: ComparisonRun) -> list[ApplicationRow]:
     """The walls of the paper's application that were run, in its unit: the dead part and the multiplier."""
     said = printed().application
     rows = []
@@ -287,7 +287,7 @@ def applications(run: ComparisonRun) -> list[_ApplicationRow]:
             continue
         number, item = found
         ours = [_carried(_result(item, method), said.dead) for method in said.methods]
-        rows.append(_ApplicationRow(number, item.case.file.title, row.printed, ours))
+        rows.append(ApplicationRow(number, item.case.file.title, row.printed, ours))
     return rows
 
 

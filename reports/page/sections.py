@@ -29,7 +29,7 @@ from reports.page.tables import RunRow
 
 
 @dataclass(frozen=True)
-class _FoldedPanel:
+class FoldedPanel:
     """One method's drawings.
 
     Attributes:
@@ -66,7 +66,7 @@ class CaseSection:
     facts: list[tuple[str, str]]
     warnings: tuple[str, ...]
     rows: list[RunRow]
-    panels: list[_FoldedPanel]
+    panels: list[FoldedPanel]
     without_drawing: list[RunRow]
     agreements: list[Agreement]
     curves: list[tuple[str, Markup]]
@@ -81,17 +81,17 @@ class CaseSection:
     bars: list[BarRow] = field(default_factory=list)
 
     @property
-    def families(self) -> list[_FoldedPanel]:
+    def families(self) -> list[FoldedPanel]:
         """The drawings of the main method of every family."""
         return [panel for panel in self.drawn if panel.row.result.is_main]
 
     @property
-    def checks(self) -> list[_FoldedPanel]:
+    def checks(self) -> list[FoldedPanel]:
         """Those of the other methods."""
         return [panel for panel in self.drawn if not panel.row.result.is_main]
 
     @property
-    def drawn(self) -> list[_FoldedPanel]:
+    def drawn(self) -> list[FoldedPanel]:
         """Panels with a drawing."""
         return [panel for panel in self.panels if panel.mechanism or panel.forces]
 
@@ -143,7 +143,7 @@ def case_section(
             without.append(row)
             continue
         panels.append(
-            _FoldedPanel(
+            FoldedPanel(
                 row=row,
                 number=index,
                 mechanism=Markup("")

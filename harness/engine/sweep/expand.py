@@ -47,7 +47,7 @@ class WallSource:
 
 
 @dataclass(frozen=True, eq=False)
-class _WallVariant:
+class WallVariant:
     """One wall of a study: where it comes from and what was changed.
 
     Attributes:
@@ -109,9 +109,9 @@ class _Walls:
 
     def __init__(self, most: int = 64) -> None:
         self._most = most
-        self._kept: OrderedDict[_WallVariant, Assembly] = OrderedDict()
+        self._kept: OrderedDict[WallVariant, Assembly] = OrderedDict()
 
-    def assembly(self, variant: _WallVariant) -> Assembly:
+    def assembly(self, variant: WallVariant) -> Assembly:
         """The assembly of a variant, see `Variant.assembly`."""
         found = self._kept.get(variant)
         if found is None:
@@ -131,12 +131,12 @@ class SweepRun(Run):
         varied: every quantity that the study varies and that this run depends on, by name.
     """
 
-    case: _WallVariant
+    case: WallVariant
     number: int = field(kw_only=True)
     varied: Mapping[str, Any] = field(kw_only=True)
 
     @property
-    def variant(self) -> _WallVariant:
+    def variant(self) -> WallVariant:
         """The wall."""
         return self.case
 
@@ -179,12 +179,12 @@ def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
         for assignment in itertools.product(*axes):
             grid = {name: value for part in assignment for name, value in part.items()}
             for draw, drawn in draws:
-                runs += _runs(study, _WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
+                runs += _runs(study, WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
     _check(study, runs)
     return runs
 
 
-def _runs(study: Study, wall: _WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
+def _runs(study: Study, wall: WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
     """The runs on one wall. A method whose settings vary is run for each of them, the others once."""
     settings = {name: where for name in values if (where := setting_of(name)) is not None}
     of_wall = {name: value for name, value in values.items() if name not in settings}
@@ -204,7 +204,7 @@ def _check(study: Study, runs: Sequence[SweepRun]) -> None:
         if owner not in study.methods:
             raise InputError(f'"{name}" is a setting of {owner}, which the study does not run', "Name it in methods")
     seen: set[str] = set()
-    looked_at: _WallVariant | None = None
+    looked_at: WallVariant | None = None
     classes = {name: load_method(name).Settings for name in study.methods if _has_settings(study, name, owners)}
     for run in runs:
         if run.method in classes:

@@ -25,7 +25,7 @@ from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.result import relative_velocities
 
-_Make = Callable[[Sequence[SweepRun]], list[Row]]
+Make = Callable[[Sequence[SweepRun]], list[Row]]
 """Makes runs, or finds them in the store, and gives their rows in any order."""
 
 _DECIDED = {str(Finding.FALLS), str(Finding.STANDS)}
@@ -33,7 +33,7 @@ _DECIDED = {str(Finding.FALLS), str(Finding.STANDS)}
 
 
 @dataclass(frozen=True)
-class _Sharing:
+class Sharing:
     """How far states are handed on.
 
     Attributes:
@@ -94,7 +94,7 @@ class _Cell:
 
 
 def handed_on(
-    runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make: _Make, sharing: _Sharing | None = None
+    runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make: Make, sharing: Sharing | None = None
 ) -> list[Row]:
     """The rows of a study after each run has taken up what its neighbours found, round after round until none falls.
 
@@ -108,7 +108,7 @@ def handed_on(
     Returns:
         one row a run; where a state was taken over its `multiplier_alone` is what the run found by itself.
     """
-    chosen = sharing or _Sharing()
+    chosen = sharing or Sharing()
     by_number = {int(row["number"]): row for row in rows}
     cells = list(_cells(runs, by_number, chosen.nearest))
     changed = cells

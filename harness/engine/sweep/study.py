@@ -56,7 +56,7 @@ def _axis_kind(value: Any) -> str:
     return "(list)"
 
 
-_Axis = Annotated[
+Axis = Annotated[
     Annotated[list[Value], Tag("(list)"), Field(min_length=1)]
     | Annotated[Range, Tag("(range)")]
     | Annotated[Whole, Tag("(seeds)")],
@@ -92,7 +92,7 @@ class Distribution(Strict):
         return self
 
 
-class _StudyLimits(Strict):
+class StudyLimits(Strict):
     """What one run may use."""
 
     seconds: Annotated[float, Field(gt=0.0, le=LONGEST)] = 120.0
@@ -124,8 +124,8 @@ class Study(Strict):
     cases: list[str] = Field(default_factory=list, description="ids of cases, case folders or wall files")
     wall: dict[str, Any] | None = Field(None, description="a wall of the study's own, format wall/1")
     methods: Annotated[list[str], Field(min_length=1)]
-    vary: dict[str, _Axis] = Field(default_factory=dict, description="a grid: every value with every other")
-    together: list[dict[str, _Axis]] = Field(default_factory=list, description="axes of equal length that vary as one")
+    vary: dict[str, Axis] = Field(default_factory=dict, description="a grid: every value with every other")
+    together: list[dict[str, Axis]] = Field(default_factory=list, description="axes of equal length that vary as one")
     draw: dict[str, Distribution] = Field(default_factory=dict, description="drawn at random, `samples` times")
     samples: Annotated[int, Field(ge=1, le=MOST_RUNS)] = 100
     seed: Annotated[int, Field(ge=0, description="of the draws")] = 0
@@ -133,7 +133,7 @@ class Study(Strict):
     neighbours: bool = Field(
         False, description="runs use the mechanisms found on walls with the same joints, if the method supports it"
     )
-    limits: _StudyLimits = Field(default_factory=_StudyLimits)
+    limits: StudyLimits = Field(default_factory=StudyLimits)
     multipliers: list[float] = Field(default_factory=list, description="for the probability of failure")
     curve: Curve | None = Field(None, description="how `drystone compare --study` draws it")
 

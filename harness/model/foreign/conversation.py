@@ -18,7 +18,7 @@ from harness.model.foreign.spawning import whole_address_space
 from harness.model.json_text import LARGEST_FILE, json_of, text_of
 
 
-class _Conversation:
+class Conversation:
     """The process of a program that answers by lines, started when it is needed and again after it was ended.
 
     It belongs to the process that started it: one that is forked from that starts another.
@@ -131,9 +131,9 @@ class _Conversation:
 
 
 @functools.cache
-def conversation_with(program: Program) -> _Conversation:
+def conversation_with(program: Program) -> Conversation:
     """The conversation with a program, one in a process."""
-    made = _Conversation(program)
+    made = Conversation(program)
     atexit.register(made.end)
     return made
 

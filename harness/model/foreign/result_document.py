@@ -19,8 +19,8 @@ from harness.model.fields import LARGEST
 from harness.model.method import Answer, Finding, Status
 from harness.model.reading import validate
 
-_Finite = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
-_Triples = list[tuple[_Finite, _Finite, _Finite]]
+Finite = Annotated[float, Field(ge=-LARGEST, le=LARGEST, strict=True)]
+Triples = list[tuple[Finite, Finite, Finite]]
 _OF_INTERFACES = ("forces", "live_forces", "dead_forces", MOVING_FORCES)
 _OF_BLOCKS = ("mechanism", "dilatant_mechanism")
 _OF_BARS = (BAR_FORCES, DEAD_BAR_FORCES)
@@ -43,25 +43,25 @@ class ResultDocument(BaseModel):
     status: Literal["ok", "not_converged", "refused"] = "ok"
     finding: Finding = Field(Finding.COLLAPSES, description='"none" unless the status is "ok"')
     sentence: str = Field("", description="for a reader: what was found, or why nothing was")
-    multiplier: _Finite | None = Field(None, description="collapse multiplier, zero or more")
-    bracket: tuple[_Finite, _Finite] | None = Field(None, description="lower and upper end")
+    multiplier: Finite | None = Field(None, description="collapse multiplier, zero or more")
+    bracket: tuple[Finite, Finite] | None = Field(None, description="lower and upper end")
     bracket_meaning: str = Field("", description="what the two ends are")
-    forces: _Triples | None = Field(None, description="contact forces in equilibrium with dead + multiplier * live")
-    forces_multiplier: _Finite | None = Field(None, description="multiplier of the forces; else `multiplier`")
-    mechanism: _Triples | None = Field(None, description="block velocities at any scale; zero on fixed blocks")
+    forces: Triples | None = Field(None, description="contact forces in equilibrium with dead + multiplier * live")
+    forces_multiplier: Finite | None = Field(None, description="multiplier of the forces; else `multiplier`")
+    mechanism: Triples | None = Field(None, description="block velocities at any scale; zero on fixed blocks")
     flow: Literal["non-associated", "associated", "approximate"] = Field(
         "non-associated", description="of the mechanism: no dilatancy, dilatancy mu, or a measured motion"
     )
-    live_forces: _Triples | None = Field(None, description="that balance the live load alone: proof of `unbounded`")
-    dead_forces: _Triples | None = Field(None, description="under the dead load: proof of `at its limit`")
-    moving_forces: _Triples | None = Field(None, description="measured with a mechanism of flow `approximate`")
-    dilatant_mechanism: _Triples | None = Field(None, description="proof of `falls` beside a measured motion")
-    bar_forces: list[_Finite] | None = Field(None, description="tensions of the ties and then the props, with `forces`")
-    dead_bar_forces: list[_Finite] | None = Field(None, description="the same, with `dead_forces`")
-    lower_bound: _Finite | None = Field(None, description="no collapse state lies below it, in floating point")
+    live_forces: Triples | None = Field(None, description="that balance the live load alone: proof of `unbounded`")
+    dead_forces: Triples | None = Field(None, description="under the dead load: proof of `at its limit`")
+    moving_forces: Triples | None = Field(None, description="measured with a mechanism of flow `approximate`")
+    dilatant_mechanism: Triples | None = Field(None, description="proof of `falls` beside a measured motion")
+    bar_forces: list[Finite] | None = Field(None, description="tensions of the ties and then the props, with `forces`")
+    dead_bar_forces: list[Finite] | None = Field(None, description="the same, with `dead_forces`")
+    lower_bound: Finite | None = Field(None, description="no collapse state lies below it, in floating point")
     certificate: dict[str, Any] | None = Field(None, description="as `drystone bound` writes it: it is checked")
     iterations: Annotated[int, Field(ge=0)] = 0
-    path: dict[str, list[_Finite]] = Field(default_factory=dict, description="columns of equal length")
+    path: dict[str, list[Finite]] = Field(default_factory=dict, description="columns of equal length")
     details: dict[str, Any] = Field(default_factory=dict, description="further findings by name")
 
     @model_validator(mode="after")

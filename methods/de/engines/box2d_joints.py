@@ -29,7 +29,7 @@ from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
-class _Box2dTuning:
+class Box2dTuning:
     """Strips in Box2D.
 
     Attributes:
@@ -102,7 +102,7 @@ class Box2dJoints:
         joints: IntArray,
         sub_steps: int,
         tuning: MassScaling,
-        options: _Box2dTuning = _Box2dTuning(),
+        options: Box2dTuning = Box2dTuning(),
     ) -> None:
         self._box2d, self._options, self._sub_steps = load_box2d(), options, sub_steps
         self.assembly = assembly

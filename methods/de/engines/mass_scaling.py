@@ -25,7 +25,7 @@ class MassScaling:
 
 
 @dataclass(frozen=True)
-class _SettlingRules:
+class SettlingRules:
     """From the courses of a wall to masses and damping.
 
     Attributes:
@@ -47,7 +47,7 @@ class _SettlingRules:
     chain_loss: float = 0.5
 
 
-def tunings(course: IntArray, mass_decay: float | None, rules: _SettlingRules = _SettlingRules()) -> list[MassScaling]:
+def tunings(course: IntArray, mass_decay: float | None, rules: SettlingRules = SettlingRules()) -> list[MassScaling]:
     """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
 
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
@@ -68,12 +68,12 @@ def number_of_courses(course: IntArray) -> int:
     return int(course.max(initial=1))
 
 
-def lighter_upwards(course: IntArray, rules: _SettlingRules = _SettlingRules()) -> MassScaling:
+def lighter_upwards(course: IntArray, rules: SettlingRules = SettlingRules()) -> MassScaling:
     """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
     return MassScaling(min(rules.decay, rules.light_span / number_of_courses(course)), rules.kept)
 
 
-def is_chain(course: IntArray, rules: _SettlingRules = _SettlingRules()) -> bool:
+def is_chain(course: IntArray, rules: SettlingRules = SettlingRules()) -> bool:
     """Whether there are few blocks a course, as in stacks and arches."""
     return bool(np.count_nonzero(course) <= rules.chain * number_of_courses(course))
 

@@ -24,7 +24,7 @@ from methods.numerics.failures import NumericalFailure
 
 
 @dataclass(frozen=True)
-class _StripTuning:
+class StripTuning:
     """Strips in pymunk.
 
     Attributes:
@@ -67,7 +67,7 @@ class PymunkJoints:
         joints: IntArray,
         iterations: int,
         tuning: MassScaling,
-        options: _StripTuning = _StripTuning(),
+        options: StripTuning = StripTuning(),
         shape: StripShape = StripShape(),
     ) -> None:
         if assembly.is_bar.any():

@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 from methods.de.settings import RISE
 
-_Rests = Callable[[float], bool]
+Rests = Callable[[float], bool]
 """Whether the wall comes to rest at a multiplier, from where it rested last. If not, it is put back there."""
 
 
 def raise_until_it_falls(
-    rests: _Rests, greatest: float, step: float, accuracy: float, growth: float = 0.0, share: float = math.inf
+    rests: Rests, greatest: float, step: float, accuracy: float, growth: float = 0.0, share: float = math.inf
 ) -> tuple[float, float | None]:
     """The highest multiplier at which the wall came to rest and the lowest at which it did not.
 
@@ -35,7 +35,7 @@ def raise_until_it_falls(
 
 
 def shown_to_fall(
-    rests: _Rests, moved: list[float], ends: tuple[float, float | None], greatest: float, rise: float
+    rests: Rests, moved: list[float], ends: tuple[float, float | None], greatest: float, rise: float
 ) -> tuple[float, float | None]:
     """The highest multiplier at which a wall came to rest and the least above it at which it is shown to move, if any.
 

@@ -23,7 +23,7 @@ from methods.de.time.fallen import Stillness, below_supports, fallen_blocks, pat
 
 
 @dataclass(frozen=True, eq=False)
-class _TimeHistory:
+class TimeHistory:
     """A motion that was followed. k states.
 
     Attributes:
@@ -96,7 +96,7 @@ def _load_contacts(space: PymunkBlocks, steps: TimeSteps) -> bool:
     return False
 
 
-def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> _TimeHistory:
+def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> TimeHistory:
     """Follow a wall from rest until it has fallen, all motion has died, or the time is over.
 
     It has fallen when a block lies below all supports. Once the ground does no more work it has also fallen when a
@@ -147,7 +147,7 @@ def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: Time
                 finding = Finding.FALLS
             elif at_rest:
                 finding = Finding.STANDS
-    return _TimeHistory(
+    return TimeHistory(
         finding,
         np.array(times),
         np.array(places),

@@ -43,7 +43,7 @@ class SettlingTuning:
 
 
 @dataclass(frozen=True, eq=False)
-class _Settled:
+class Settled:
     """An uneven wall at rest under its dead load.
 
     Attributes:
@@ -91,7 +91,7 @@ def settle_uneven(
     seed: int = 0,
     most_steps: int = 20_000,
     options: SettlingTuning = SettlingTuning(),
-) -> _Settled:
+) -> Settled:
     """Let the wall of uneven blocks come to rest under its dead load and take its contacts.
 
     Args:
@@ -106,7 +106,7 @@ def settle_uneven(
     space = PymunkBlocks(assembly, outlines, options.damping)
     before, at_rest = _come_to_rest(space, most_steps, np.inf, options)
     settled, single = with_contacts(assembly, space, before, options)
-    return _Settled(settled, at_rest, outlines, before, single)
+    return Settled(settled, at_rest, outlines, before, single)
 
 
 def _come_to_rest(

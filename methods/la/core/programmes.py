@@ -22,7 +22,7 @@ from methods.numerics.linear_programme import INFINITY, Programme
 
 
 @dataclass(frozen=True)
-class _StaticSolver:
+class StaticSolver:
     """How HiGHS solves static programmes.
 
     Attributes:
@@ -58,7 +58,7 @@ class StaticProgramme:
     Columns are the slacks (y1, y2, y3) of an interface, from which r and y4 follow, and lambda.
     """
 
-    def __init__(self, problem: Problem, solver: _StaticSolver = _StaticSolver()) -> None:
+    def __init__(self, problem: Problem, solver: StaticSolver = StaticSolver()) -> None:
         self.problem = problem
         m, rows, constant = problem.n_interfaces, problem.law.rows, problem.law.constant
         inverse = 2.0 * np.eye(3) - rows[:, :3]  # of a matrix whose diagonal is one, with entries in the last row only

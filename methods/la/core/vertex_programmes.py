@@ -34,7 +34,7 @@ _BADLY_SCALED = 1e3
 
 
 @dataclass(frozen=True)
-class _ExtremeSolution:
+class ExtremeSolution:
     """Forces of the greatest or least multiplier, and the dilatant mechanism dual to them: with or against the load."""
 
     statics: StaticSolution
@@ -99,7 +99,7 @@ class ForceProgramme:
         rows[len(self._equilibrium[1]) :] += n
         return sp.csc_matrix((values, (rows, columns)), shape=(n + 2 * m, 3 * m + self._loads))
 
-    def extreme(self, greatest: bool, tight: BoolArray | None = None, solver: str = "auto") -> _ExtremeSolution | str:
+    def extreme(self, greatest: bool, tight: BoolArray | None = None, solver: str = "auto") -> ExtremeSolution | str:
         """The greatest or, from zero on, the least multiplier of statics; or how the programme ended without one.
 
         Args:
@@ -119,7 +119,7 @@ class ForceProgramme:
         velocities, rates = self._motion(vertex)
         work = abs(float(self.problem.live @ velocities))
         scale = self.problem.live_work / work if work > 0.0 else 1.0
-        return _ExtremeSolution(
+        return ExtremeSolution(
             StaticSolution(self._forces(vertex), float(vertex.value[-1]), iterations),
             KinematicSolution(scale * velocities, scale * rates),
         )
@@ -323,6 +323,6 @@ def standing(problem: Problem) -> StaticSolution | KinematicSolution | str:
     return found.statics if _carries_all(problem, found) else found.kinematics
 
 
-def _carries_all(problem: Problem, found: _ExtremeSolution, rounding: float = 1e-9) -> bool:
+def _carries_all(problem: Problem, found: ExtremeSolution, rounding: float = 1e-9) -> bool:
     """Whether the least part of the dead load that is not carried is none, but for rounding where it may be any."""
     return found.statics.multiplier <= (0.5 if problem.law.is_cone else rounding)

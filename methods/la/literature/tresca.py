@@ -21,7 +21,7 @@ from methods.numerics.linear_programme import INFINITY, Programme
 
 
 @dataclass(frozen=True)
-class _TrescaResult:
+class TrescaResult:
     """Scaled forces (m, 3) and multiplier of the last iterate, the multipliers of all, and how it ended."""
 
     forces: FloatArray | None
@@ -33,7 +33,7 @@ class _TrescaResult:
 
 def tresca_sequence(
     problem: Problem, forces: FloatArray, max_iterations: int, weight: float, tolerance: float
-) -> _TrescaResult:
+) -> TrescaResult:
     """The sequence from given forces.
 
     Args:
@@ -60,12 +60,12 @@ def tresca_sequence(
         )
         status, value, _ = programme.run()
         if status != "optimal":
-            return _TrescaResult(None, float("nan"), history, change, status)
+            return TrescaResult(None, float("nan"), history, change, status)
         forces, multiplier = value[:-1].reshape(-1, 3), float(value[-1])
         history.append(multiplier)
         wanted = law.strength(np.maximum(forces, 0.0))
         change = float(abs(wanted - bound).max(initial=0.0))
         if change <= tolerance:
-            return _TrescaResult(forces, multiplier, history, change, "settled")
+            return TrescaResult(forces, multiplier, history, change, "settled")
         bound = (1.0 - weight) * bound + weight * wanted
-    return _TrescaResult(forces, multiplier, history, change, "not settled")
+    return TrescaResult(forces, multiplier, history, change, "not settled")

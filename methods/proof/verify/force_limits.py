@@ -21,7 +21,7 @@ from methods.proof.verify.exact_wall import (
     whole_numbers,
 )
 
-_Sides = Mapping[int, tuple[Fraction, Fraction | None]]
+Sides = Mapping[int, tuple[Fraction, Fraction | None]]
 """{interface: (least, greatest normal force)}; None where there is no limit from above."""
 
 
@@ -39,11 +39,11 @@ class Forces:
         high: Fraction,
         document: Any,
         tight: Collection[int] = (),
-        sides: _Sides | None = None,
+        sides: Sides | None = None,
     ) -> None:
         self.wall, self.low, self.high = wall, low, high
         self.tight, self.rays = frozenset(tight), _rays_of(wall, tight)
-        self.sides: _Sides = {} if sides is None else sides
+        self.sides: Sides = {} if sides is None else sides
         self.unit = 2 ** whole(document["exponent"], 0, 200)
         m = wall.n_interfaces
         self._rows, self._row_unit = integers([dict(row) for row in wall.sparse])
