@@ -99,6 +99,9 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
     balance = None
     if shown is not None and listed:
         balance = out_of_balance(case.assembly, listed, shown.forces_multiplier or 0.0)
+    rows = joint_rows(case, shown)[:joints] if shown else []
+    crushes = any(row.number("crushing_utilisation") is not None for row in rows)
+    critical = [column for column in _CRITICAL if crushes or column.name != "crushing_utilisation"]
     return Governing(
         item=item,
         ways=[
@@ -108,8 +111,8 @@ def governing(items: Sequence[CaseResults], joints: int = 8) -> Governing:
         shown=shown,
         reactions=listed,
         balance=balance,
-        joints=joint_rows(case, shown)[:joints] if shown else [],
-        joint_columns=in_units(_CRITICAL, case.wall.units.force, case.wall.units.length),
+        joints=rows,
+        joint_columns=in_units(critical, case.wall.units.force, case.wall.units.length),
     )
 
 

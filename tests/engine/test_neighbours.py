@@ -48,20 +48,20 @@ def motion_of(wall: Any, mechanism: Any) -> np.ndarray[Any, Any]:
 
 
 def test_a_state_missed_at_one_friction_is_found_by_the_mechanism_of_the_next_for_any_number_of_workers(tmp_path: Path):
-    quick = {"la": {"effort": "quick"}}
-    asked = study(vary={"friction": [0.9, 1.0]}, methods=["la", "la-associated"], settings=quick)
+    quick = {"la": {"effort": "quick", "starts": 6}}
+    asked = study(vary={"friction": [1.0, 1.1]}, methods=["la", "la-associated"], settings=quick)
     one, two = (table_of(asked, tmp_path / f"{n}.sqlite", n) for n in (1, 2))
     pd.testing.assert_frame_equal(one.drop(columns=COST), two.drop(columns=COST))
     found = one[one["method"] == "la"].set_index("friction")
-    assert found["multiplier"][1.0] == pytest.approx(found["multiplier"][0.9], rel=1e-9)
-    assert found["from_neighbour"].tolist() == [False, True]
+    assert found["multiplier"][1.0] == pytest.approx(found["multiplier"][1.1], rel=1e-9)
+    assert found["from_neighbour"].tolist() == [True, False]
     assert found["multiplier_alone"][1.0] > found["multiplier"][1.0] + 0.01
     assert found["judge_accepted"].all()
     assert one[one["method"] == "la-associated"]["from_neighbour"].isna().all(), "it takes up no mechanism"
     with open_store(tmp_path / "1.sqlite") as store:
         kept = store.get(found["key"][1.0])
         assert kept is not None
-        assert kept[0].given == [found["key"][0.9]], "the stored row tells whose mechanism it took up"
+        assert kept[0].given == [found["key"][1.1]], "the stored row tells whose mechanism it took up"
     summary = summarise(asked, one)
     assert summary.tables["neighbours"]["friction"].tolist() == [1.0]
     assert "1 of 4 runs" in summary.remarks[0]

@@ -56,7 +56,8 @@ class Sizes:
         descended: interfaces up to which states are descended from; above, a draw takes a second and more.
         provable, provable_ring: interfaces up to which a proof is tried, and those of walls with at most two more
             interfaces than blocks. With more, hardly any tree finishes within its nodes.
-        starts, blocks_started: with other weights, and those times the blocks of the wall, at most.
+        starts, blocks_started: with other weights, and those times the blocks of the wall, at most; a sixth of them
+            for the quick effort.
         continuation, fine_continuation: factors on friction: mechanisms found at each are carried on. The fine one
             first goes down from above the friction of the wall.
     """
@@ -82,7 +83,8 @@ class Sizes:
         descents = int(interfaces <= self.descended)
         starts = min(self.starts, self.blocks_started // max(blocks, 1))
         if effort == "quick":
-            return SearchLimits(0, 8, 200, descents, nodes=min(nodes, 100), breakpoints=300, unbounded_breakpoints=300)
+            few = min(nodes, 100)
+            return SearchLimits(starts // 6, 8, 200, descents, nodes=few, breakpoints=300, unbounded_breakpoints=300)
         if effort == "deep":
             nodes = 20000 if interfaces <= 2 * most else 0
             work = 2 * self.starts, 40, 200, 8, self.fine_continuation, nodes, 3 * nodes, nodes
