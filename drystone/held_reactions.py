@@ -10,6 +10,7 @@ reaction as the load.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy as np
 from drystone.reactions import moving_blocks, one_alone, proved_extremes
 from drystone.released_supports import OtherSupports, ReleasedWall, released
 from drystone.walls import Wall
-from harness.engine.judge import judged_alone
+from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_held, reaction_of, work_scale
 from harness.model.assembly import FloatArray
@@ -105,7 +106,7 @@ def held_reactions(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple
         return ends
     if alone := one_alone(assembly, *ends):
         return alone
-    result = judged_alone(still, runs.result(OtherSupports(wall.case, still), "de", settings))
+    result = runs.result(OtherSupports(wall.case, still), "de", settings, partial(judge, alone=True))
     if result.finding is not Finding.STANDS or result.forces is None or not result.judge.accepted:
         return f"Distinct elements do not hold the wall on supports at rest: {result.sentence}"
     beyond = bar_tensions(still, result)

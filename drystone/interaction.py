@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from drystone.boundary import FAR, Boundary, BoundaryPoint, Stopped
 from drystone.walls import Wall
-from harness.engine.judge import judged_alone
+from harness.engine.judge import judge
 from harness.engine.measures import magnitudes
 from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken
@@ -318,8 +318,7 @@ def domain_by(
 
     def run(direction: FloatArray) -> Result:
         x, y = (direction / scale).tolist()
-        combined = CombinedWall(pair, x, y)
-        return judged_alone(combined.assembly, runs.result(combined, method, settings))
+        return runs.result(CombinedWall(pair, x, y), method, settings, partial(judge, alone=True))
 
     boundary = Boundary(pair.loads() / scale[:, None, None], run, accuracy, most)
     try:

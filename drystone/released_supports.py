@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.judge import judge, judged_alone
+from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.bars import Bars
@@ -73,9 +73,7 @@ class ReleasedWall:
     def result(self, case: Case, method: str, settings: Mapping[str, Any], runs: Runs) -> Result:
         """The judged answer of a method, whose multiplier is how far the reaction has changed."""
         wall = OtherSupports(case, self.assembly)
-        quantity = "change of the reaction"
-        result = runs.result(wall, method, settings, partial(judge, quantity=quantity))
-        return judged_alone(self.assembly, result, quantity)
+        return runs.result(wall, method, settings, partial(judge, quantity="change of the reaction", alone=True))
 
     def holds(self, tensions: FloatArray) -> bool:
         """Whether no guiding bar yields in tensions (k + 2,)."""

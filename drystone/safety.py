@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from drystone.walls import Wall
-from harness.engine.judge import judged_alone
+from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken, takers
 from harness.engine.run import Limits
@@ -249,12 +249,8 @@ def factor_by(
             "loads.live",
             wall.case.origin,
         )
-
-    def run(at: float) -> Result:
-        reduced = ReducedWall(wall.case, at, share)
-        return judged_alone(reduced.assembly, runs.result(reduced, method, settings))
-
-    search = _Search(run)
+    alone = partial(judge, alone=True)
+    search = _Search(lambda at: runs.result(ReducedWall(wall.case, at, share), method, settings, alone))
     search.bracket(furthest)
     search.bisect(accuracy)
     return FactorOfSafety(

@@ -83,7 +83,8 @@ def judge(
         result: the answer as a result.
         tolerance: the largest residual that is acceptable for this method.
         quantity: what sentences call the multiplier, where that of this wall stands for another quantity.
-        alone: leave out the answer for other strength of the joints that comes with it.
+        alone: leave out the answer for other strength of the joints that comes with it: where the wall as described is
+            asked about, an undecided residual answer takes nothing from its proof.
     """
     if result.status is not Status.OK or result.finding is Finding.NONE:
         return Judgement(tolerance=tolerance, sentence="There is no answer to judge.")
@@ -237,18 +238,6 @@ def _with_motion(said: Judgement, residuals: dict[str, float], fault: str) -> Ju
         said.accepted = False
         said.sentence += f" {fault}"
     return said
-
-
-def judged_alone(assembly: Assembly, result: Result, quantity: str = "multiplier") -> Result:
-    """A judged result with what is said of it alone, not of the answer for other strength that comes with it.
-
-    Where the wall as described is asked about, an undecided residual answer takes nothing from its proof.
-    """
-    details = AnswerDetails(result.details)
-    if not details.has_without_strength and not details.has_with_strength:
-        return result
-    said = judge(assembly, result, result.judge.tolerance, quantity, alone=True)
-    return result.model_copy(update={"judge": said.model_copy(update={"code": result.judge.code})})
 
 
 def answered(method: Method, assembly: Assembly, **settings: Any) -> tuple[Result, Judgement]:

@@ -192,7 +192,10 @@ def _found(run: Run, store: Store, summaries: Mapping[str, dict[str, Any]] | Non
 
 
 def _word(run: Run, assembly: Assembly, result: Result, tolerance: float) -> Judgement:
-    return (run.judge or judge)(assembly, result, tolerance).model_copy(update={"code": judge_version()})
+    said = (run.judge or judge)(assembly, result, tolerance)
+    return said.model_copy(
+        update={"code": "" if run.judge else judge_version()}
+    )  # the word of its own judge is its own
 
 
 def _held(run: Run, result: Result) -> Result:

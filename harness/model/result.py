@@ -43,7 +43,8 @@ class Judgement(BaseModel):
         sentence: what was judged, and what failed if anything did.
         multiplier_error: how far, by virtual work, the multiplier of the mechanism can be from the reported one; None
             where that was not shown.
-        code: hash of the judge's code, where the result is kept; another judge judges it again.
+        code: hash of the judge's code, where the result is kept; another judge judges it again. Empty where the run had
+            a judge of its own, whose word counts for that run only.
     """
 
     model_config = ConfigDict(defer_build=True, extra="forbid")

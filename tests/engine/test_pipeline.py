@@ -151,6 +151,20 @@ def test_another_judge_judges_what_is_kept_anew_and_makes_nothing_again(tmp_path
         assert judged == kept, "its word is kept, so that the next look is quick"
 
 
+def test_the_word_of_a_judge_of_one_question_counts_for_no_other(tmp_path: Path):
+    """A study reads the word that is kept, without judging anew, where the judge is the same."""
+    asked = case(stack(2, 0.4, 0.2), 0.6)
+    own = Run(asked, "la-associated", {}, None, judge=lambda *_: Judgement(accepted=True, sentence="of its own"))
+    with open_store(tmp_path / "s.sqlite") as store:
+        (made,) = pipeline.execute([own], store, 1, executor=InProcess())
+        assert made.judge.sentence == "of its own"
+        usual = replace(own, judge=None)
+        ((_, read, stored),) = pipeline.executed([usual], store, InProcess(), whole=False)
+    assert stored
+    assert read.judge.sentence != "of its own"
+    assert read.judge.code
+
+
 def test_runs_in_this_process_are_kept_and_found(tmp_path: Path):
     run = Run(case(stack(2)), METHOD, {}, None)
     with open_store(tmp_path / "runs.sqlite") as store:
