@@ -125,7 +125,7 @@ def test_a_block_at_rest_has_sunk_as_far_as_the_stiffness_and_impedance_of_its_c
         engine.velocity()
         engine.advance(10)
         assert engine.unbalance(engine.velocity()) < 1e-6  # of the weight
-        return SoftContacts().rounding - float(engine.save()[1])
+        return SoftContacts().overlap - float(engine.save()[1])
 
     # Rest is reached to the 1e-6 above.
     assert penetration(0.5) / penetration(0.8) == pytest.approx((0.5 / 0.5**2) / (0.2 / 0.8**2), rel=1e-6)

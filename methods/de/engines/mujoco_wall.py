@@ -38,8 +38,9 @@ class SoftContacts:
         stiffness, damping: as above. Stiffer contacts let large walls vibrate under their dead load.
         wall_impedance, chain_impedance: for walls, and for chains of blocks, whose slow modes want stiffer contacts.
         radius: of a contact sphere, in unit lengths. It does not matter: the sphere touches a flat face at one point.
-        rounding: by which a sphere starts inside its face, in unit lengths, so that rounding does not decide which
-            contacts start; and the least friction of a contact, whose cone is not to vanish.
+        overlap: by which a sphere starts inside its face, in unit lengths, so that rounding does not decide which
+            contacts start.
+        least_friction: of a contact, whose cone is not to vanish.
     """
 
     time_step: float = 1e-4
@@ -48,7 +49,8 @@ class SoftContacts:
     wall_impedance: float = 0.9
     chain_impedance: float = 0.97
     radius: float = 0.05
-    rounding: float = 1e-12
+    overlap: float = 1e-12
+    least_friction: float = 1e-12
 
 
 @dataclass(frozen=True)
@@ -208,14 +210,14 @@ class MujocoWall:
             middle = (wall.end1[p] + wall.end2[p]) / 2.0 + depth * normal
             size = [(0.5 + shape.overhang) * length / self._unit, depth / self._unit, depth / self._unit]
             add(f"face {p}", b, middle, type=box, size=size, quat=[np.cos(half), 0.0, -np.sin(half), 0.0])
-            friction = max(float(wall.friction[p]), contacts.rounding)
+            friction = max(float(wall.friction[p]), contacts.least_friction)
             for k, end in enumerate((wall.end1[p], wall.end2[p])):
                 add(
                     f"end {p} {k}",
                     a,
                     end - contacts.radius * self._unit * normal,
                     type=sphere,
-                    size=[contacts.radius + contacts.rounding, 0.0, 0.0],
+                    size=[contacts.radius + contacts.overlap, 0.0, 0.0],
                 )
                 spec.add_pair(
                     name=f"contact {p} {k}",
