@@ -76,8 +76,16 @@ class Programme:
         self._cost[index] = cost
         self.highs.changeColsCost(len(index), index, cost)
 
+    def stop_above(self, value: float) -> None:
+        """Let runs end as "above" as soon as their minimum is known to be above a value; infinity lets them go on.
+
+        The dual simplex method comes to know it long before a programme is proved to have no solution, which may take
+        it thousands of steps at a degenerate vertex.
+        """
+        self.highs.setOptionValue("objective_bound", value)
+
     def run(self) -> tuple[str, FloatArray, FloatArray]:
-        """("optimal" | "infeasible" | "unbounded" | "unknown", column values, row duals).
+        """("optimal" | "infeasible" | "unbounded" | "above" | "unknown", column values, row duals).
 
         Raises:
             OutOfTime: the time given is over; the library would hear of it only at its end.
@@ -91,6 +99,7 @@ class Programme:
             highspy.HighsModelStatus.kOptimal: "optimal",
             highspy.HighsModelStatus.kInfeasible: "infeasible",
             highspy.HighsModelStatus.kUnbounded: "unbounded",
+            highspy.HighsModelStatus.kObjectiveBound: "above",
         }
         if status not in names:
             self.highs.clearSolver()

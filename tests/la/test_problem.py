@@ -171,6 +171,13 @@ def test_the_programmes_of_a_block_have_its_multipliers(sense: float, most: floa
     assert not isinstance(held, str)
     assert problem.to_multiplier(held.multiplier) == pytest.approx(sliding)
     assert problem.slacks(held.forces)[slipping] == pytest.approx(0.0, abs=1e-9)
+    assert programme.solve(slipping, below=0.99 * held.multiplier) == "above"
+    assert programme.solve(slipping, below=held.multiplier) == "above"
+    both = np.ones((2, 4), dtype=bool)
+    assert programme.solve(both) == "infeasible"  # joints without forces carry no weight
+    again = programme.solve(slipping, below=1.01 * held.multiplier)
+    assert not isinstance(again, str)
+    assert again.multiplier == pytest.approx(held.multiplier, rel=1e-12)
 
 
 def test_a_mechanism_of_least_cost_moves_in_the_contacts_allowed_alone() -> None:

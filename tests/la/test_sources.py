@@ -217,3 +217,18 @@ def test_forces_of_the_least_multiplier_do_not_hang_on_where_the_solver_comes_fr
     assert not isinstance(again, str)
     assert again.multiplier == pytest.approx(fresh.multiplier, abs=1e-9)
     assert again.forces == pytest.approx(fresh.forces, abs=1e-6)  # the tolerance of the solver, times what it solves
+
+
+def test_mechanism_without_a_state_below_one_multiplier_is_asked_again_below_a_higher_one() -> None:
+    search = search_of(running_bond(6, 3, 0.2, 0.65))
+    explore(search, [CentralPath()])
+    state = search.record.improvements[-1].state
+    other = search.varied(search.problem)
+    rates = search.problem.rates_of_velocities(state.velocities, associated=False)
+    assert other.state_of(state.velocities, rates, 0.5 * state.multiplier) is None
+    asked = other.budget.spent.programmes
+    assert other.state_of(state.velocities, rates, 0.4 * state.multiplier) is None
+    assert other.budget.spent.programmes == asked
+    found = other.state_of(state.velocities, rates)
+    assert found is not None
+    assert found.multiplier == pytest.approx(state.multiplier, rel=1e-9)

@@ -82,8 +82,10 @@ class StaticProgramme:
         if m > solver.devex_above:
             self._programme.highs.setOptionValue("simplex_dual_edge_weight_strategy", 1)
 
-    def solve(self, tight: BoolArray | None = None, greatest: bool = False) -> StaticSolution | str:
-        """The solution, or "infeasible", "unbounded", "unknown".
+    def solve(
+        self, tight: BoolArray | None = None, greatest: bool = False, below: float = INFINITY
+    ) -> StaticSolution | str:
+        """The solution, or "infeasible", "unbounded", "above", "unknown".
 
         Joints that are redundant let many forces go with the least multiplier, and which of them a solver comes upon
         differs from release to release, while a search goes on from them. So of all these, a second programme takes
@@ -92,6 +94,7 @@ class StaticProgramme:
         Args:
             tight: (m, 4) slacks held at zero.
             greatest: maximise the multiplier instead of minimising it.
+            below: a least multiplier that is not below this is of no use, and ends as "above".
         """
         m = self.problem.n_interfaces
         tight = np.zeros((m, 4), dtype=bool) if tight is None else tight
@@ -101,9 +104,13 @@ class StaticProgramme:
         self._programme.set_rows(self.problem.n_velocities, self._least_last, most)
         self._programme.set_columns(3 * m, np.array([-INFINITY if greatest else 0.0]), np.array([INFINITY]))
         self._programme.set_costs(3 * m, np.array([-1.0 if greatest else 1.0]))
+        self._programme.stop_above(below)
         status, value, _ = self._programme.run()
+        self._programme.stop_above(INFINITY)
         if status != "optimal":
             return status
+        if value[-1] >= below:
+            return "above"
         multiplier, iterations = float(value[-1]), self._programme.iterations()
         if not greatest:
             self._programme.set_columns(3 * m, value[-1:], value[-1:])

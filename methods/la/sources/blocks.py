@@ -36,7 +36,7 @@ class SingleBlocks:
                 search.budget.spent.programmes += 1
                 if least >= search.record.least - LEAST_IMPROVEMENT:
                     continue
-                state = search.state_of(velocities, problem.rates_of_velocities(velocities, False))
+                state = search.state_of(velocities, problem.rates_of_velocities(velocities, False), search.record.least)
                 if state is not None:
                     yield state
 

@@ -142,7 +142,7 @@ class OtherWeights:
             dead = guide.dead * np.repeat(shares, 3, axis=1)
             for slack, rates in search.ends_of_copies(guide, dead):
                 moving = np.packbits(rates >= slack).tobytes()
-                state = search.nearest_state(slack, rates) if moving not in tried else None
+                state = search.nearest_state(slack, rates, search.record.least) if moving not in tried else None
                 tried.add(moving)
                 if state is not None:
                     yield state

@@ -63,8 +63,8 @@ class Choices:
 class Search:
     """Everything that a wall's search shares: programmes, known mechanisms, budget, record.
 
-    `known` holds the state of every mechanism tried, None where no forces fit it; `ends` the multipliers at which
-    descents ended; `associated` the programme of statics alone, once it is solved.
+    `known` holds the state of every mechanism tried, None where no forces fit it below the multiplier beside it;
+    `ends` the multipliers at which descents ended; `associated` the programme of statics alone, once it is solved.
 
     Args:
         problem: the scaled wall; newton: its Newton matrix.
@@ -90,7 +90,7 @@ class Search:
         self.budget: Budget = (budget or Budget()) if parent is None else parent.budget
         self.choices: Choices = choices if parent is None else parent.choices
         self.record = Record()
-        self.known: dict[bytes, CollapseState | None] = {}
+        self.known: dict[bytes, tuple[CollapseState | None, float]] = {}
         self.ends: list[float] = []
         self.associated = AssociatedResult("unknown")
 
@@ -139,15 +139,15 @@ class Search:
         Zero-dilatancy mechanisms do not depend on friction, so each needs one static programme only. Where forces fit
         none of them, the mechanisms nearest to their forces are tried.
         """
-        theirs = sorted((state for state in other.known.values() if state is not None), key=lambda s: s.multiplier)
+        theirs = sorted((state for state, _ in other.known.values() if state is not None), key=lambda s: s.multiplier)
         states = [self._best_of(state.velocities, state.moving) for state in theirs[:most]]
         if not any(states):
             states = [self.nearest_state(self.problem.slacks(state.forces)) for state in theirs[:most]]
         return [state for state in states if state is not None]
 
-    def state_of(self, velocities: FloatArray, rates: FloatArray) -> CollapseState | None:
-        """The best collapse state of a mechanism, or None if no forces fit it."""
-        return self._best_of(velocities, moving_contacts(rates))
+    def state_of(self, velocities: FloatArray, rates: FloatArray, below: float = np.inf) -> CollapseState | None:
+        """The best collapse state of a mechanism, or None if no forces fit it with a multiplier below a given one."""
+        return self._best_of(velocities, moving_contacts(rates), below)
 
     def lowered(self, state: CollapseState) -> CollapseState:
         """The lowest state of the mechanism of a state: other forces may fit it at a lower multiplier."""
@@ -155,22 +155,24 @@ class Search:
         lower = least is not None and least.multiplier < state.multiplier - LEAST_IMPROVEMENT
         return least if least is not None and lower else state
 
-    def _best_of(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
+    def _best_of(self, velocities: FloatArray, moving: BoolArray, below: float = np.inf) -> CollapseState | None:
         key = _key(moving)
-        if key not in self.known:
-            self.known[key] = state = self._solved(velocities, moving)
+        state, asked = self.known.get(key, (None, -np.inf))
+        if state is None and below > asked:
+            state = self._solved(velocities, moving, below)
+            self.known[key] = state, below
             if state is not None:
                 self.note(state)
-        return self.known[key]
+        return state
 
-    def _solved(self, velocities: FloatArray, moving: BoolArray) -> CollapseState | None:
-        if self.problem.n_interfaces > self.choices.vertices_up_to:
+    def _solved(self, velocities: FloatArray, moving: BoolArray, below: float) -> CollapseState | None:
+        if self.problem.n_interfaces > self.choices.vertices_up_to:  # which cannot end early
             state, steps = state_of_mechanism(self.problem, self.newton, velocities, moving, self.choices.exactness)
             self.stepped(steps)
             exact = state is not None and max(residuals(self.problem, state).values()) <= self.choices.exactness.kept
             return state if exact else None
         self.budget.spent.programmes += 1
-        solution = self.static.solve(moving)
+        solution = self.static.solve(moving, below=below)
         if isinstance(solution, str):
             return None
         return CollapseState(solution.forces, solution.multiplier, velocities, moving)
@@ -184,12 +186,15 @@ class Search:
         """Note a collapse state if none known is lower."""
         self.record.note(state, self.budget.spent)
 
-    def nearest_state(self, slack: FloatArray, rates: FloatArray | None = None) -> CollapseState | None:
+    def nearest_state(
+        self, slack: FloatArray, rates: FloatArray | None = None, below: float = np.inf
+    ) -> CollapseState | None:
         """The collapse state of the mechanism that does least work y.g on given slacks (m, 4), or None.
 
         Args:
             slack: which may be those of another friction.
             rates: (m, 4) of the path that has these slacks, if they belong to one.
+            below: multiplier from which on a state is of no use; the search may end before it knows one.
         """
         slack = np.maximum(slack, 0.0)
         if self.problem.n_interfaces > self.choices.vertices_up_to:
@@ -198,7 +203,7 @@ class Search:
             self.budget.spent.programmes += 1
             mechanism = self.kinematic.solve(allowed, slack)
             if mechanism is not None:
-                state = self.state_of(mechanism.velocities, mechanism.rates)
+                state = self.state_of(mechanism.velocities, mechanism.rates, below)
                 if state is not None:
                     return state
         return None
@@ -209,7 +214,7 @@ class Search:
         state, steps = exact_state(self.problem, self.newton, mechanism, self.choices.exactness)
         self.stepped(steps)
         if state is not None:
-            self.known[_key(state.moving)] = state
+            self.known[_key(state.moving)] = state, np.inf
             self.note(state)
         return state
 
@@ -258,7 +263,7 @@ class Search:
         slack = np.maximum(self.problem.slacks(state.forces), 0.0)
         self.budget.spent.programmes += 1
         mechanism = self.kinematic.solve(np.repeat(edge[:, None], 4, axis=1), slack)
-        return None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
+        return None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates, state.multiplier)
 
     def descend_from(self, states: Iterable[CollapseState]) -> list[CollapseState]:
         """Where ray descent leads from the lowest of the states that differ in multiplier."""
@@ -285,7 +290,9 @@ class Search:
             cost = self.generator.exponential(size=tight.shape) ** 2
             self.budget.spent.programmes += 1
             mechanism = self.kinematic.solve(tight, cost)
-            other = None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates)
+            other = (
+                None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates, state.multiplier)
+            )
             if other is not None and other.multiplier < state.multiplier - LEAST_IMPROVEMENT:
                 state, failures = other, 0
             else:
