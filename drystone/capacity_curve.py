@@ -18,7 +18,8 @@ from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.settled_judge import judge_every_state, states_in_words
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError
+from harness.model.errors import Hints, InputError
+from harness.model.names import unknown_block
 from harness.model.result import Judgement
 
 if TYPE_CHECKING:
@@ -153,5 +154,5 @@ def _check(assembly: Assembly, block: str | None) -> None:
     if np.any(assembly.support_motion):
         raise InputError("the wall has settlements", "Ask `drystone reaction --until-collapse`, or leave them out")
     if block is not None and block not in assembly.block_ids:
-        raise InputError(f'no block is called "{block}"', "Name a block of this wall", "--block")
+        raise unknown_block(block, "--block", Hints(assembly.block_ids))
     check_simple(assembly, assembly.dead, assembly.live)

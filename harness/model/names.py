@@ -30,12 +30,14 @@ def _name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, s
 
     found = first_worded(twice(), "blocks have the id of another", "blocks")
     hints = Hints(seen)
-    unknown = (
-        InputError(f'no block is called "{name}"', hints.of(name) or "Name a block of this wall", place)
-        for place, name in named
-        if name not in seen
-    )
+    unknown = (unknown_block(name, place, hints) for place, name in named if name not in seen)
     return found + first_worded(unknown, "names are of no block", "wall")
+
+
+def unknown_block(name: str, place: str, hints: Hints) -> InputError:
+    """The fault that no block of a wall, whose names the hints are of, has this name."""
+    remedy = f"{hints.of(name)} Blocks of this wall: {hints.there(MOST_NAMED)}".strip()
+    return InputError(f'no block is called "{name}"', remedy, place)
 
 
 def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:

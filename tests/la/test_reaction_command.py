@@ -122,7 +122,7 @@ def test_a_wall_that_settles_has_a_key_of_its_own():
     ("settlement", "words"),
     [
         ({"blocks": ["block"], "translation": [0, -1]}, 'block "block" is not fixed'),
-        ({"blocks": ["nobody"], "translation": [0, -1]}, 'no block is called "nobody"'),
+        ({"blocks": ["nobody"], "translation": [0, -1]}, 'no block is called "nobody". Blocks of this wall: '),
         ({"group": "nobody", "translation": [0, -1]}, 'no block is in a group "nobody"'),
         ({"group": "free", "translation": [0, -1]}, 'block "block" is not fixed'),
         ({"blocks": ["right"]}, "moves nothing"),
