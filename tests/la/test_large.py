@@ -25,9 +25,10 @@ from methods.la.least import least_of
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
-from methods.la.sources.arcs import NEAR, ArcPaths
+from methods.la.sources.arcs import NEAR, ArcPaths, RestoredFriction
 from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.search import Choices, Search
+from methods.la.sources.source import Source
 from methods.la.sources.springs import LowPrestress
 from tests.la.bodies import running_bond
 
@@ -128,11 +129,12 @@ def test_what_rests_on_a_moving_block_moves() -> None:
     assert not moves[wall.fixed].any()
 
 
-def test_search_of_the_part_that_collapses_gives_states_of_the_whole_wall() -> None:
+@pytest.mark.parametrize("source", [ArcPaths(least=100), RestoredFriction(least=100)], ids=lambda source: source.name)
+def test_search_of_the_part_that_collapses_gives_states_of_the_whole_wall(source: Source) -> None:
     # With half of the blocks some of these paths arrive with one arithmetic of a processor and not with another.
     problem = make_problem(running_bond(20, 11, 0.175, 0.65))
     search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
-    explore(search, [ArcPaths(least=100)])
+    explore(search, [source])
     states = search.record.states
     assert states
     for state in states:
@@ -201,3 +203,15 @@ def test_springs_of_gravity_are_left_out_where_paths_by_arc_length_arrive_on_lar
         assert search.record.known
         breakpoints.append(search.budget.spent.breakpoints)
     assert breakpoints[0] > 0 == breakpoints[1]
+
+
+def test_path_with_friction_restored_has_a_state_where_joints_press_under_the_live_load_only() -> None:
+    """Between the openings of a facade head joints press that the dead load leaves unloaded."""
+    problem = make_problem(facade(1, 4, "running", 0.6))
+    search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
+    explore(search, [ArcPaths(near=NEAR[1:2])])
+    assert not search.record.known
+    explore(search, [RestoredFriction()])
+    state = search.record.improvements[-1].state
+    assert state.multiplier <= search.associated.greatest
+    assert max(residuals(problem, state).values()) <= 1e-10

@@ -130,15 +130,23 @@ class ArcPath:
                 or (self._steps == self._stepping.trial and not self._has_left())
             ):
                 break
-            self._go_on(step)
+            try:
+                self._go_on(step)
+            except FloatingPointError:
+                break
             self._steps += 1
         if result is None:
             raise SingularMatrix("the path could not factorise its first system")
         return result
 
     def _go_on(self, step: NewtonStep) -> None:
-        """One step back to the path, or along it, or back to the last good point."""
-        way = self._way(step)
+        """One step back to the path, or along it, or back to the last good point.
+
+        Raises:
+            FloatingPointError: the system is singular to rounding, so that its solutions have no bound.
+        """
+        with np.errstate(over="raise", invalid="raise"):
+            way = self._way(step)
         if not (way.on_path or self._again):
             self._astray += 1
             if self._astray <= self._stepping.patience or not self._take_up_again():

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from harness.model.assembly import FloatArray
-from methods.la.sources.arcs import FAR, ArcPaths
+from methods.la.sources.arcs import FAR, ArcPaths, RestoredFriction
 from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.mechanisms import GivenMechanisms
@@ -24,6 +24,7 @@ SOURCES: tuple[Source, ...] = (
     ReducedFriction(factors=(0.6, 0.0), most=2000),
     ReducedFriction(factors=(0.6,), least=2001),
     ArcPaths(),
+    RestoredFriction(),
     LowPrestress(least=2001),
     CentralPath(most=1000),
     FrictionContinuation(),

@@ -86,20 +86,85 @@ class ArcPaths:
                     yield state
 
 
+@dataclass(frozen=True)
+class RestoredFriction:
+    """A path by arc length that leaves one of `ArcPaths` early and goes on with the friction that the wall has.
+
+    Joints that the dead load leaves unloaded may press under the live load, as those between the openings of a facade
+    do. Forces of the wall then fit no mechanism at the end of a path with part of their friction. A point of that path
+    has equilibrium and rates for any friction, and slacks only grow with it: so a path of the wall goes through it.
+
+    Attributes:
+        least: interfaces from which it is followed.
+        start: beginning of the path; those that differ from it arrive no more often.
+        leave: relative gap at which the friction is restored.
+        gaps: of the path from there, with the weights of its start, at which its mechanism is tried.
+    """
+
+    name: ClassVar[str] = "path by arc length, friction restored"
+    least: int = 1001
+    start: ArcStart = NEAR[1]
+    leave: float = 1e-2
+    gaps: tuple[float, ...] = (1e-6, 1e-8)
+
+    def applies(self, problem: Problem) -> bool:
+        """On walls too large for descents."""
+        return problem.n_interfaces >= self.least
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state at most, where none is known."""
+        if search.associated.state is None or search.record.known:
+            return
+        state = self._end_of(search, moving_region(search.problem, search.associated.state.velocities))
+        if state is not None:
+            yield state
+
+    def _end_of(self, search: Search, region: Region) -> CollapseState | None:
+        part, most = region.problem, max(self.start.least_steps, region.problem.n_velocities // 3)
+        begun = _begun(self.start, search, region)
+        if begun is None:
+            return None
+        guide, arc = begun
+        path = arc.follow(self.leave, most)
+        search.budget.stepped(path.iterations, part.n_velocities // 3)
+        if not path.converged:
+            return None
+        point = replace(path.point, slack=part.slacks(guide.forces_of_slacks(path.point.slack)))
+        return _state_on(ArcPath(part, region.newton, point), part, self.gaps, most, search, region)
+
+
 def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseState | None:
     """The state that one path by arc length leads to."""
-    problem, part = search.problem, region.problem
-    blocks = part.n_velocities // 3
+    begun = _begun(arc_start, search, region)
+    if begun is None:
+        return None
+    most = max(arc_start.least_steps, region.problem.n_velocities // 3)
+    return _state_on(begun[1], begun[0], arc_start.gaps, most, search, region)
+
+
+def _begun(arc_start: ArcStart, search: Search, region: Region) -> tuple[Problem, ArcPath] | None:
+    """The part of the wall with the friction of a beginning, and its path from there; None without any."""
+    part = region.problem
     guide = with_reduced_friction(part, arc_start.smooth) or part
     start, steps = interior_starting_point(guide, region.newton, arc_start.gap)
-    search.budget.stepped(steps, blocks)
-    if start is None:
-        return None
-    exactness = search.choices.exactness
+    search.budget.stepped(steps, part.n_velocities // 3)
+    return None if start is None else (guide, ArcPath(guide, region.newton, start, arc_start.spread))
+
+
+def _state_on(
+    arc: ArcPath, guide: Problem, gaps: tuple[float, ...], most: int, search: Search, region: Region
+) -> CollapseState | None:
+    """The state of the wall by the mechanism at the first of these gaps of a path that has one.
+
+    Args:
+        arc: the path, of `guide`; gaps: at which its mechanism is tried; most: Newton steps from one to the next.
+        search: whose wall it is; region: the part of it.
+    """
+    problem, part = search.problem, region.problem
+    blocks, exactness = part.n_velocities // 3, search.choices.exactness
     quick = replace(exactness, shares=exactness.shares[:1])
-    arc = ArcPath(guide, region.newton, start, arc_start.spread)
-    for gap in arc_start.gaps:
-        path = arc.follow(gap, max(arc_start.least_steps, blocks))
+    for gap in gaps:
+        path = arc.follow(gap, most)
         search.budget.stepped(path.iterations, blocks)
         if not path.converged:
             return None

@@ -74,6 +74,10 @@ class Record:
         """Whether a source of this name led to a state."""
         return any(tried.source == source and tried.states for tried in self.tried)
 
+    def led_to_state_but(self, source: str) -> bool:
+        """Whether a source of any other name led to a state."""
+        return any(tried.source != source and tried.states for tried in self.tried)
+
     @contextmanager
     def trying(self, source: str, spent: Work) -> Iterator[Tried]:
         """Note what is found and spent in this time as of a source; `spent` is the count that goes on."""

@@ -27,7 +27,7 @@ from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
-from methods.la.sources.arcs import ArcPaths
+from methods.la.sources.arcs import ArcPaths, RestoredFriction
 from methods.la.sources.friction_continuation import with_reduced_friction
 from methods.la.sources.gravity import Gravity, gravity_of
 from methods.la.sources.record import LEAST_IMPROVEMENT
@@ -202,7 +202,7 @@ class ShiftedAssociated:
 
 @dataclass(frozen=True)
 class AnalyticCentre:
-    """Paths from forces well within yield under the dead load, and gravity's, where nothing else led to a state.
+    """Paths from forces well within yield under the dead load, and gravity's, where nothing else led to a low state.
 
     Attributes:
         shares: of the least multiplier known between two commits, one path each.
@@ -219,8 +219,12 @@ class AnalyticCentre:
         return not problem.dilates and problem.law.is_cone
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state a path that ends; none where statics allows any load."""
-        if not (search.record.known or search.associated.outcome == "unbounded"):
+        """One state a path that ends; none where statics allows any load.
+
+        States of the path whose friction is restored are higher than those of springs by up to a hundredth.
+        """
+        known = search.record.led_to_state_but(RestoredFriction.name)
+        if not (known or search.associated.outcome == "unbounded"):
             yield from (state for _, state in ends(search, self._starts(search)))
 
     def _starts(self, search: Search) -> Iterator[Start]:
