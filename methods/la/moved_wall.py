@@ -17,6 +17,9 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.displaced import carried
 from methods.la.settings import ClosureTolerances
 
+_ROUNDING = 8.0 * float(np.finfo(float).eps)
+"""Rounding of the distance of two points, in their coordinates, which sum a centroid, its displacement and an arm."""
+
 
 @dataclass(frozen=True, eq=False)
 class MovedWall:
@@ -115,13 +118,14 @@ class MovedWall:
         fixed = self.drawn.fixed
         places[fixed] = support_places(self.drawn.support_motion, further)[fixed]
         wall = MovedWall(self.drawn, further, places, held)
-        size, meets = self.drawn.length_scale, held.any(axis=1)
+        meets = held.any(axis=1)
         wanted = np.column_stack([held, meets]).ravel()
         share = held / np.maximum(held.sum(axis=1), 1)[:, None]
+        apart = max(by.distance * self.drawn.length_scale, _ROUNDING * float(abs(np.stack(wall._points)).max()))
         for _ in range(by.steps):
             misses = np.column_stack([wall.gaps, (share * wall.shifts).sum(axis=1)])
             miss = misses.ravel()[wanted]
-            if not float(abs(miss).max(initial=0.0)) > by.distance * size:
+            if not float(abs(miss).max(initial=0.0)) > apart:
                 return wall
             wall = replace(wall, places=wall._corrected(wanted, miss, by.damping))
         return None

@@ -102,6 +102,7 @@ def settle(
     if isinstance(now, str):
         return now
     size = assembly.length_scale / (fastest_vertex(assembly, assembly.support_motion) or 1.0)
+    farthest = start.displacement + steps.far * size
     deadline, step, points = Deadline.of_run(), steps.first * size, [now]
     for _ in range(steps.most):
         deadline.ask()
@@ -110,10 +111,12 @@ def settle(
             return SettledUntil(
                 tuple(points), None, None, f"From there on the joint between {sliding} slides, which is not followed."
             )
-        if now.wall.displacement - start.displacement > steps.far * size:
+        left = farthest - now.wall.displacement
+        if not left > steps.width * size:
             return SettledUntil(tuple(points), None, None, "It stands as far as it was followed.")
         before = now.wall
-        now, failure = _advanced(now, step, held, steps.width * size, steps.closure, state_of)
+        length = min(step, left) if _turns(now, steps.moves) else left
+        now, failure = _advanced(now, length, held, steps.width * size, steps.closure, state_of)
         if now.wall.displacement > points[-1].wall.displacement:
             points.append(now)
         if failure is None:
@@ -160,6 +163,13 @@ def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
         return held, ""
     joint = slides[np.argmax(abs(rates[slides, 2]))]
     return held, " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
+
+
+def _turns(now: StandingState, moves: float) -> bool:
+    """Whether a block turns: if none does, no joint that bears is strained, and the state stays until a joint closes."""
+    assembly, mechanism = now.wall.assembly, now.mechanism
+    turning = float(abs(mechanism[:, 2]).max()) * assembly.length_scale
+    return turning > moves * fastest_vertex(assembly, mechanism)
 
 
 def _tried(

@@ -109,6 +109,49 @@ def test_supports_turn_about_their_pole():
     )
 
 
+def row(layout: list[str], way: list[float]) -> drystone.Wall:
+    """Stones on two supports, A that stays and B that moves."""
+    panel = {"type": "panel", "cell_length": 0.3, "cell_height": 0.25, "layout": layout, "fixed": "AB"}
+    moves = [{"blocks": ["B"], "translation": way}]
+    return drystone.build_wall(
+        {"format": "wall/1", "unit_weight": 20, "friction": 0.4, "pattern": panel, "settlements": moves}
+    )
+
+
+@pytest.mark.parametrize(
+    "wall",
+    [
+        drystone.build_wall(data(DOWN, part=0.6)),
+        row(["abbbcd", "AAAABB"], [1.0, 0.0]),
+        row(["aaabbc", "dddeee", "fgghhi", "AABBBB"], [0.5, -1.0]),
+    ],
+    ids=["block", "spreads", "stones behind"],
+)
+def test_a_wall_in_which_nothing_turns_is_followed_in_one_step(wall: drystone.Wall):
+    """It took ten thousand; coordinates of 256 sizes of a block have no digits left for pins that meet to 1e-13."""
+    found = settled_until_collapse(wall)
+    assert isinstance(found, SettledCollapse)
+    assert found.reason == "It stands as far as it was followed."
+    speed = np.hypot(*wall.assembly.support_motion[:, :2].T).max()
+    assert found.stands * speed == pytest.approx(SettlingSteps().far * wall.assembly.length_scale)
+    assert len(found.displacement) == 2
+    assert found.reaction[0] == pytest.approx(found.reaction[1])
+    assert found.judgements[0].accepted, found.sentence
+
+
+def test_a_step_in_which_nothing_turns_ends_where_a_joint_closes():
+    """Two blocks side by side are drawn apart by .7; their supports return, and they meet."""
+    drawn = row(["ab", "AB"], [-1.0, 0.0]).assembly
+    start = MovedWall.at_rest(drawn)
+    right = [drawn.block_ids.index(name) for name in ("b", "B")]
+    places = start.places.copy()
+    places[right, 0] = 0.7
+    apart = replace(start, displacement=-0.7, places=places)
+    found = settle(replace(apart, closed=apart.gaps < 0.5))
+    assert isinstance(found, SettledUntil)
+    assert [point.wall.displacement for point in found.points] == pytest.approx([-0.7, 0.0], abs=SHARP)
+
+
 @pytest.mark.parametrize(("wall", "words"), [(bricks(0.65), "slides, which is not followed")])
 def test_a_wall_that_slides_is_not_followed(wall: drystone.Wall, words: str):
     found = settled_until_collapse(wall)
