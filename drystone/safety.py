@@ -76,8 +76,17 @@ class ReducedWall:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Those of the wall as it is described."""
-        return self.case.warnings
+        """Those of the wall as it is described, and that strength which a factor divides is never lost."""
+        drawn = self.case.assembly
+        plastic = int((drawn.constant.any(axis=1) & ~drawn.brittle).sum())
+        if not plastic:
+            return self.case.warnings
+        return (
+            *self.case.warnings,
+            f"cohesion or tensile strength of {plastic} of {drawn.n_interfaces} joints counts as plastic: never lost, "
+            'however far a joint opens or slips. Mortar is brittle: ask with "after": "residual", or without both, '
+            "too, and rely on the least factor",
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +111,11 @@ class FactorOfSafety:
     falls: Result | None
     runs: int
     reason: str
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a person should hear about the wall and the strength of its joints."""
+        return ReducedWall(self.wall.case, 1.0, self.share).warnings
 
     @property
     def value(self) -> float | None:
@@ -170,6 +184,7 @@ class FactorOfSafety:
             "sentence": self.sentence,
             "fall_proved": self.fall_proved,
             "runs": self.runs,
+            "warnings": list(self.warnings),
             **ends,
         }
 

@@ -20,7 +20,7 @@ from drystone.cli.options import (
     warn,
 )
 from drystone.cli.settings import settings_of
-from drystone.safety import factor_by
+from drystone.safety import ReducedWall, factor_by
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, find_cases
@@ -61,7 +61,7 @@ def factor(
     """
     check_methods([method], "--method")
     (found,) = find_cases([case], None, folders)
-    warn(found)
+    warn(ReducedWall(found, 1.0, share))
     answer = factor_by(
         Wall(found),
         method,

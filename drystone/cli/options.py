@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
-from harness.engine.run import LONGEST, MOST_MEMORY, Limits
+from harness.engine.run import LONGEST, MOST_MEMORY, Analysed, Limits
 from harness.model.case import Case, case_folders, shipped_cases
 from harness.model.errors import InputError, visible
 from harness.model.fields import LARGEST
@@ -269,7 +269,7 @@ def runs_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_runs
 
 
-def warn(case: Case) -> None:
+def warn(case: Analysed) -> None:
     """Tell what a person should hear about a wall, on standard error."""
     for sentence in case.warnings:
         say(f"drystone: {case.id}: {sentence}", err=True)

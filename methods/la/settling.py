@@ -166,7 +166,7 @@ def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
 
 
 def _turns(now: StandingState, moves: float) -> bool:
-    """Whether a block turns: if none does, no joint that bears is strained, and the state stays until a joint closes."""
+    """Whether a block turns: if none does, no joint that bears is strained; the state stays until one closes."""
     assembly, mechanism = now.wall.assembly, now.mechanism
     turning = float(abs(mechanism[:, 2]).max()) * assembly.length_scale
     return turning > moves * fastest_vertex(assembly, mechanism)

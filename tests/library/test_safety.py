@@ -63,6 +63,36 @@ def test_cohesion_is_divided_too():
     assert found.value == pytest.approx((0.4 * 4.0 * math.cos(angle) + 1.0) / (4.0 * math.sin(angle)), rel=EXACT)
 
 
+@pytest.mark.parametrize(
+    ("more", "warned"),
+    [
+        ({}, False),
+        ({"cohesion": 1.0}, True),
+        ({"cohesion": 1.0, "tensile_strength": 1.0}, True),
+        ({"cohesion": 1.0, "after": "residual"}, False),
+    ],
+    ids=["dry", "cohesion", "tension", "brittle"],
+)
+def test_strength_that_is_never_lost_is_warned_of(more: dict[str, Any], warned: bool):
+    """In the object, in its JSON and in both results."""
+    found = factor(sloped(30.0, 0.7, **more), accuracy=0.1)
+    assert found.stands is not None
+    assert found.falls is not None
+    for warnings in (found.warnings, found.as_json()["warnings"], found.stands.warnings, found.falls.warnings):
+        assert [sentence.split(" counts as plastic")[0] for sentence in warnings] == [
+            "cohesion or tensile strength of 1 of 1 joints"
+        ] * warned
+
+
+def test_the_command_warns_of_strength_that_is_never_lost(tmp_path: Path):
+    path = tmp_path / "slope.json"
+    sloped(30.0, 0.7, cohesion=1.0).save(path)
+    done = commands.drystone("factor", path, "--accuracy", "0.1", "--json")
+    assert done.returncode == 0
+    assert "of 1 of 1 joints counts as plastic" in done.stderr
+    assert "counts as plastic" in json.loads(done.stdout)["warnings"][0]
+
+
 def test_a_share_of_the_live_load_acts_beside_the_dead_load():
     """The block slides where its friction is the share of its weight that pushes."""
     found = factor(pushed(0.6), share=0.2, accuracy=EXACT)
