@@ -30,8 +30,9 @@ SAME = 1e-6
 judge tolerates of an associated state. A coarser one would join edges that differ, and the lines of neither would pass
 through both ends of what they were taken for."""
 FAR = 100.0
-"""A boundary is followed to this multiple of its nearest point. Farther out the weight is so small beside the live load
-that a linear programme has too few digits for the judge's tolerance of 1e-9."""
+"""The edge of a polygon is followed to this multiple of its nearest point, and points to this multiple of the dead load
+or of their nearest. Farther out the weight is so small beside the live load that a linear programme has too few digits
+for the judge's tolerance of 1e-9."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +41,8 @@ class BoundaryPoint:
 
     Attributes:
         direction: (2,) of the plane of the two multipliers.
-        reach: multiple of the direction at which the wall collapses; infinite: it bears every multiple.
+        reach: multiple of the direction at which the wall collapses; infinite: it bears every multiple;
+            nan: unknown.
         bracket: the ends between which a measured reach lies; both are the reach if it is computed.
         normal: (2,) of the edge, with normal . (x, y) <= 1 in the whole domain; None: no edge follows from it.
         result: the judged answer.
@@ -73,7 +75,16 @@ class Stopped(Exception):
 
 
 class Refused(Stopped):
-    """One direction has no accepted answer."""
+    """One direction has no accepted answer.
+
+    Attributes:
+        result: that is none.
+    """
+
+    def __init__(self, text: str, result: Result) -> None:
+        """The text says why."""
+        super().__init__(text)
+        self.result = result
 
 
 @dataclass
@@ -81,13 +92,15 @@ class Boundary:
     """The boundary of a domain as its runs trace it.
 
     Attributes:
-        loads: (2, n, 3), of about the same size, so that angles of the plane have digits on both axes; run: makes the
-            judged result of a direction; accuracy, most: as of `domain`.
+        loads: (2, n, 3), of about the same size, so that angles of the plane have digits on both axes; unit: multiplier
+            at which one is as large as the dead load; run: makes the judged result of a direction; accuracy, most: as
+            of `domain`.
         found: every point, by the angle of its direction; vertices: ids of those that are corners of a polygon.
         excess, runs, reason: as of `Domain`.
     """
 
     loads: FloatArray
+    unit: float
     run: Callable[[FloatArray], Result]
     accuracy: float
     most: int
@@ -103,7 +116,7 @@ class Boundary:
         Raises:
             Stopped: two neighbouring vertices have no edge in common, so one was missed; or as `ask`.
         """
-        self._all_sides(self._edge_between)
+        self._all_sides(self.ask, self._edge_between)
         sides = self._sides()
         if missing := sum(line is None for line in sides):
             raise Stopped(
@@ -113,12 +126,14 @@ class Boundary:
 
     def points_between(self) -> None:
         """Halve directions, from the four of the axes on, the most curved part of the boundary first."""
-        self._all_sides(self._halve)
+        self._all_sides(self._asked, self._halve)
 
     def _all_sides(
-        self, between: Callable[[BoundaryPoint, BoundaryPoint], list[tuple[BoundaryPoint, BoundaryPoint]]]
+        self,
+        ask: Callable[[FloatArray], BoundaryPoint],
+        between: Callable[[BoundaryPoint, BoundaryPoint], list[tuple[BoundaryPoint, BoundaryPoint]]],
     ) -> None:
-        axes = [self.ask(np.array(way)) for way in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))]
+        axes = [ask(np.array(way)) for way in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))]
         waiting = list(zip(axes, [*axes[1:], axes[0]], strict=True))
         while waiting:
             waiting += between(*waiting.pop(0))
@@ -137,7 +152,7 @@ class Boundary:
         if result.status is not Status.OK or result.judge.accepted is not True:
             said = result.sentence if result.status is not Status.OK else result.judge.sentence
             raise Refused(
-                f"In the direction ({direction[0]:.6g}, {direction[1]:.6g}) there is no accepted answer: {said}"
+                f"In the direction ({direction[0]:.6g}, {direction[1]:.6g}) there is no accepted answer: {said}", result
             )
         if result.finding is Finding.FALLS:
             raise Stopped("The wall falls under its dead load.")
@@ -203,25 +218,34 @@ class Boundary:
         self.vertices.append(BoundaryPoint(asymptote, math.inf, (math.inf, math.inf), None, point.result))
         return []
 
-    def _halve(self, a: BoundaryPoint, b: BoundaryPoint) -> list[tuple[BoundaryPoint, BoundaryPoint]]:
-        """Ask the direction between two neighbours; the two pairs that it leaves, or none where the chord holds."""
-        if not a.bounded and not b.bounded:
-            return []
-        # Beside an unbounded direction the angle is halved, whatever lies far out elsewhere.
-        near = min(float(np.hypot(*end.at)) for end in (a, b) if end.bounded)
-        ends = [end.at if end.bounded else end.direction * near for end in (a, b)]
-        middle = ends[0] / 2.0 + ends[1] / 2.0
-        size = float(np.hypot(*middle))
-        narrow = _cross(*ends) <= self.accuracy * np.hypot(*ends[0]) * np.hypot(*ends[1])
-        if narrow or size > FAR * min(end.reach for end in self.found):
-            return []
+    def _asked(self, direction: FloatArray) -> BoundaryPoint:
+        """The boundary in a direction, or one of unknown reach where the answer is not accepted.
+
+        Raises:
+            Stopped: as `ask`.
+        """
         try:
-            point = self.ask(middle / size)
+            return self.ask(direction)
         except Refused as refused:
-            self.reason = str(refused)
+            self.reason = self.reason or str(refused)
+            return BoundaryPoint(direction, math.nan, (math.nan, math.nan), None, refused.result)
+
+    def _halve(self, a: BoundaryPoint, b: BoundaryPoint) -> list[tuple[BoundaryPoint, BoundaryPoint]]:
+        """Ask the direction half-way between neighbours; the two pairs that it leaves, or none where the chord holds.
+
+        There is no chord to a direction that ends at the origin, is followed no further or of unknown reach.
+        """
+        far = FAR * max(self.unit, min((end.reach for end in self.found), default=0.0))
+        narrow = _cross(a.direction, b.direction) <= self.accuracy
+        if narrow or a.reach == b.reach == 0.0 or not (a.reach < far or b.reach < far):
             return []
-        if a.bounded and b.bounded and point.bounded and abs(point.reach - size) <= self.accuracy * size:
-            return []
+        middle = a.direction + b.direction
+        middle /= np.hypot(*middle)
+        point = self._asked(middle)
+        if all(0.0 < end.reach < far for end in (a, b)):
+            chord = _cross(a.at, b.at) / (_cross(a.at, middle) + _cross(middle, b.at))
+            if abs(point.reach - chord) <= self.accuracy * chord:
+                return []
         return [(a, point), (point, b)]
 
     def all_points(self) -> tuple[BoundaryPoint, ...]:

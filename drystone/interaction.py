@@ -320,7 +320,8 @@ def domain_by(
         x, y = (direction / scale).tolist()
         return runs.result(CombinedWall(pair, x, y), method, settings, partial(judge, alone=True))
 
-    boundary = Boundary(pair.loads() / scale[:, None, None], run, accuracy, most)
+    unit = pair.cases[0].assembly.load_unit
+    boundary = Boundary(pair.loads() / scale[:, None, None], unit, run, accuracy, most)
     try:
         (boundary.polygon if exact else boundary.points_between)()
     except Stopped as stop:

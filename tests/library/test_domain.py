@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -198,6 +199,47 @@ def test_points_of_the_least_known_states_lie_on_the_closed_form():
     slides = abs(found.vertices.sum(axis=1)) / (FRICTION * WEIGHT)
     np.testing.assert_allclose(np.maximum(overturns, slides), 1.0, rtol=1e-7)
     assert "points of the boundary" in found.sentence
+
+
+def test_points_leave_no_unbounded_cone_out_between_a_near_and_a_far_one():
+    """|x - .4 y| <= .3 (1 + y - x / 4), open towards (1.4, 2) to (4, 37): a chord to a far point hid most of it."""
+    found = drystone.domain(FLAT, "la", live=((1.0, 0.25), (-0.4, -1.0)), accuracy=0.05)
+    assert found.reason == ""
+    x, y = found.vertices.T
+    np.testing.assert_allclose(abs(x - 0.4 * y), 0.3 * (1.0 + y - 0.25 * x), rtol=1e-6, atol=1e-9)
+    angle = np.arctan2(found.unbounded[:, 1], found.unbounded[:, 0])
+    ends = np.arctan2([1.075, 0.7], [0.7, 0.1])
+    assert [angle.min(), angle.max()] == pytest.approx(sorted(ends), abs=0.05)
+
+
+def test_points_near_the_limit_on_one_side_are_followed_on_the_others():
+    """A column with a load that all but overturns it: |x| h <= (1 + y) b / 2 less what the load does."""
+    made = document() | {"load_cases": {}}
+    at_limit = {"points": [{"block": "1", "at": [WIDTH / 2.0, HEIGHT], "force": [1.599, 0.0]}]}
+    cases = {"right": [1.0, 0.0], "down": [0.0, -1.0]}
+    made["load_cases"] = {
+        name: {"dead": at_limit, "live": {"body": [{"per_weight": way}]}} for name, way in cases.items()
+    }
+    found = drystone.domain(drystone.build_wall(made, "near"), "la", load_cases=("right", "down"), accuracy=0.05)
+    assert found.reason == ""
+    x, y = found.vertices.T
+    push = WEIGHT * x + 1.599
+    moment = WEIGHT * x * HEIGHT / 2.0 + 1.599 * HEIGHT
+    used = np.maximum(abs(moment) / (WIDTH / 2.0), abs(push) / FRICTION) / (WEIGHT * (1.0 + y))
+    np.testing.assert_allclose(used, 1.0, rtol=1e-6)
+    assert (x < 0.0).sum() > 10
+
+
+def test_a_direction_without_an_answer_leaves_the_others():
+    """On a slope a load normal to the plane takes friction away and does no work on the slip: `la` knows no state."""
+    slope = document() | {"load_cases": {}, "loads": {"gravity": [-math.sin(0.35), -math.cos(0.35)]}}
+    slope["pattern"] = stack(1, 1.0, 0.2)
+    found = drystone.domain(drystone.build_wall(slope, "slope"), "la", accuracy=0.05)
+    assert "In the direction (0, -1) there is no accepted answer" in found.reason
+    x, y = found.vertices.T
+    used = abs(x - math.sin(0.35)) / (FRICTION * (math.cos(0.35) + y))
+    np.testing.assert_allclose(used, 1.0, rtol=1e-6)
+    assert len(found.vertices) > 10
 
 
 def test_points_beside_unbounded_directions_reach_far_out():
