@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drystone.reactions import length_unit, with_unit
 from drystone.settling import check_simple, run_followed
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
@@ -41,6 +42,7 @@ class CapacityCurve:
         ultimate: displacement at which the multiplier is zero [length], or None.
         judgements: (k,) of the points, and where there is one of the fall a hair beyond.
         reason: why it was followed no further; empty where it falls.
+        unit: of displacements; empty where the wall has none.
     """
 
     assembly: Assembly
@@ -51,6 +53,7 @@ class CapacityCurve:
     ultimate: float | None
     judgements: tuple[Judgement, ...]
     reason: str
+    unit: str
 
     @property
     def accepted(self) -> bool:
@@ -63,12 +66,14 @@ class CapacityCurve:
         said = states_in_words(self.judgements)
         begins = f"The multiplier is {self.multiplier[0]:.7g} as drawn"
         if self.ultimate is None:
+            last = with_unit(f"{self.displacement[-1]:.7g}", self.unit)
             return (
-                f"{begins} and {self.multiplier[-1]:.7g} at the displacement {self.displacement[-1]:.7g} of "
-                f"{self.control}. {self.reason} {said}"
+                f"{begins} and {self.multiplier[-1]:.7g} at the displacement {last} of {self.control}. "
+                f"{self.reason} {said}"
             )
+        ultimate = with_unit(f"{self.ultimate:.7g}", self.unit)
         return (
-            f"{begins} and falls to zero at the displacement {self.ultimate:.7g} of {self.control}, beyond which the "
+            f"{begins} and falls to zero at the displacement {ultimate} of {self.control}, beyond which the "
             f"wall falls under its dead load. {said}"
         )
 
@@ -92,9 +97,9 @@ class CapacityCurve:
 
     def plot(self) -> Figure:
         """The multiplier against the displacement, and the wall where it last bears a load."""
-        from reports.figures.settling import settled_figure
+        from reports.figures.settling import labelled, settled_figure
 
-        labels = (f"displacement of {self.control}", "multiplier")
+        labels = (labelled(f"displacement of {self.control}", self.unit), "multiplier")
         return settled_figure(self.assembly, self.places[-1], (self.displacement, self.multiplier), labels)
 
 
@@ -120,7 +125,7 @@ def capacity(
             supports that move.
     """
     assembly = wall.assembly
-    _check(assembly, block)
+    _check(wall, block)
     settings = {} if steps is None else steps.model_dump(mode="json")
     followed = run_followed(wall, "la-capacity", settings, partial(judge_every_state, tolerance=tolerance), runs)
     if isinstance(followed, str):
@@ -136,6 +141,7 @@ def capacity(
         None if states.falls is None else float(displacement[-1]),
         said,
         states.reason,
+        length_unit(wall),
     )
 
 
@@ -147,12 +153,13 @@ def _control(assembly: Assembly, block: str | None, places: FloatArray) -> float
     return float((live * places[:, :2]).sum() / np.hypot(live[:, 0], live[:, 1]).sum())
 
 
-def _check(assembly: Assembly, block: str | None) -> None:
+def _check(wall: Wall, block: str | None) -> None:
     """Refuse what is not followed. Raises InputError."""
+    assembly = wall.assembly
     if not assembly.has_live_load:
         raise InputError("the wall has no live load, so that it has no multiplier", "Give a live load", "loads.live")
     if np.any(assembly.support_motion):
         raise InputError("the wall has settlements", "Ask `drystone reaction --until-collapse`, or leave them out")
     if block is not None and block not in assembly.block_ids:
         raise unknown_block(block, "--block", Hints(assembly.block_ids))
-    check_simple(assembly, assembly.dead, assembly.live)
+    check_simple(wall, "ask `drystone run` for the multiplier as drawn", assembly.dead, assembly.live)

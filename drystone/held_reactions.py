@@ -36,7 +36,7 @@ class HeldReaction:
         gives_way: whether the supports move as prescribed; else they push, backwards.
         rest: reaction R0 of the wall at rest on supports that do not move.
         held, moving: ends of the bracket over all sweep orders: the reaction up to which every order held, and the
-            farthest from R0 at which one moved. Work on the motion: a force where that is a translation by one.
+            farthest from R0 at which one moved [force; moment of rotations alone].
         value: middle of the bracket of the median order.
         extremes: least and greatest reaction of associated flow.
         forces_at: reaction at which the forces were measured, held in the median order.

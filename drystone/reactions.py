@@ -27,7 +27,7 @@ class Reaction:
     """A reaction of the supports along their prescribed motion, under the dead load.
 
     Attributes:
-        value: work on the motion: a force where the motion is a translation by one, a moment for a rotation by one.
+        value: along the direction of the motion [force; moment of rotations alone].
         forces: (m, 3) contact forces [force]; tensions: (k,) of ties and props [force].
         mechanism: (n, 3) motion of all blocks that belongs to them.
         moving: names of the free blocks that move in it.
@@ -110,11 +110,31 @@ def proved_extremes(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = Runs())
 def reaction_unit(wall: Wall) -> str:
     """The unit of a reaction along the settlements of a wall, as "kN" or "kN m"; empty where the wall has no units.
 
-    A translation is a direction, so the reaction is a force; with a rotation, in radians, it is a moment.
+    A translation is a direction, so the reaction is a force; of rotations alone, in radians, it is a moment.
     """
     force, length = wall.units["force"], wall.units["length"]
-    turns = any(settlement.rotation for settlement in wall.case.wall.settlements)
-    return " ".join(unit for unit in (force, length if turns else "1") if unit != DIMENSIONLESS)
+    return " ".join(unit for unit in (force, length if _turns_alone(wall) else "1") if unit != DIMENSIONLESS)
+
+
+def motion_unit(wall: Wall) -> str:
+    """The unit in which the motion of supports is counted, as "m" or "rad"; empty where the wall has no units."""
+    return "rad" if _turns_alone(wall) else length_unit(wall)
+
+
+def length_unit(wall: Wall) -> str:
+    """The unit of a displacement, as "m"; empty where the wall has no units."""
+    length = wall.units["length"]
+    return length if length != DIMENSIONLESS else ""
+
+
+def with_unit(number: str, unit: str) -> str:
+    """A number and its unit, if it has one."""
+    return f"{number} {unit}".rstrip()
+
+
+def _turns_alone(wall: Wall) -> bool:
+    """Whether no settlement has a translation."""
+    return not any(any(settlement.translation) for settlement in wall.case.wall.settlements)
 
 
 def check_reactions(assembly: Assembly, file: str) -> None:

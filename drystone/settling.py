@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drystone.reactions import check_reactions
+from drystone.reactions import check_reactions, motion_unit, reaction_unit, with_unit
 from drystone.walls import Wall
 from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
@@ -29,7 +29,8 @@ class SettledCollapse:
 
     Attributes:
         assembly: the wall as drawn.
-        stands: largest displacement at which the wall was found to stand, as a multiple of the prescribed motion.
+        stands: largest displacement at which the wall was found to stand, along the motion of its supports [length;
+            rad of rotations alone].
         falls: a displacement a hair larger at which it falls, or None.
         displacement, reaction: (k,) on the way; the least reaction in the wall as it stands there.
         places: (n, 3) displacements [length] and rotations [rad] of the blocks at `stands`.
@@ -38,6 +39,7 @@ class SettledCollapse:
         fallen: (n, 3) places at `falls`; mechanism: (n, 3) dilatant motion that proves the fall; or None.
         judgements: of the last state at which it stands and, where there is one, of the fall.
         reason: why it was followed no further; empty where it falls.
+        units: of displacements and of reactions; empty where the wall has none.
     """
 
     assembly: Assembly
@@ -52,6 +54,7 @@ class SettledCollapse:
     mechanism: FloatArray | None
     judgements: tuple[Judgement, ...]
     reason: str
+    units: tuple[str, str]
 
     @property
     def accepted(self) -> bool:
@@ -63,13 +66,11 @@ class SettledCollapse:
         """What was found, and what the judge says."""
         pins = f", turning about {len(self.pins)} joints: {first_few(self.pins, 8)}" if self.pins else ""
         said = " ".join(each.sentence for each in self.judgements)
-        stands, falls = _apart(self.stands, self.falls)
+        stands, falls = (with_unit(number, self.units[0]) for number in _apart(self.stands, self.falls))
+        begins = f"The wall stands until its supports have moved by {stands}{pins}."
         if self.falls is None:
-            return f"The wall stands up to {stands} times the prescribed motion{pins}. {self.reason} {said}"
-        return (
-            f"The wall stands up to {stands} times the prescribed motion{pins}. At {falls} times no "
-            f"admissible state is left. {said}"
-        )
+            return f"{begins} {self.reason} {said}"
+        return f"{begins} At {falls} no admissible state is left. {said}"
 
     def as_json(self) -> dict[str, Any]:
         """JSON values."""
@@ -95,9 +96,11 @@ class SettledCollapse:
 
     def plot(self) -> Figure:
         """The reaction against the displacement, and the wall where it last stands."""
-        from reports.figures.settling import settled_figure
+        from reports.figures.settling import labelled, settled_figure
 
-        return settled_figure(self.assembly, self.places, (self.displacement, self.reaction))
+        names = ("displacement of the supports", "least reaction")
+        displacement, reaction = (labelled(name, unit) for name, unit in zip(names, self.units, strict=True))
+        return settled_figure(self.assembly, self.places, (self.displacement, self.reaction), (displacement, reaction))
 
 
 def settled_until_collapse(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = Runs()) -> SettledCollapse | str:
@@ -113,7 +116,7 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = 
     """
     assembly = wall.assembly
     check_reactions(assembly, wall.case.origin)
-    check_simple(assembly, assembly.dead)
+    check_simple(wall, "ask for the reactions as drawn", assembly.dead)
     followed = run_followed(wall, "la-settling", {}, partial(judge_last_state, tolerance=tolerance), runs)
     if isinstance(followed, str):
         return followed
@@ -134,6 +137,7 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = 
         states.falling,
         said,
         states.reason,
+        (motion_unit(wall), reaction_unit(wall)),
     )
 
 
@@ -172,12 +176,17 @@ def _apart(low: float, high: float | None) -> tuple[str, str]:
     return texts
 
 
-def check_simple(assembly: Assembly, *loads: FloatArray) -> None:
+def check_simple(wall: Wall, instead: str, *loads: FloatArray) -> None:
     """Refuse what is not followed on updated geometry: strength, bars, and loads (n, 3) beside the centroids.
+
+    Args:
+        wall: the wall; instead: what can be asked of a wall that has them, as "ask this".
+        loads: that act on it.
 
     Raises:
         InputError: naming what is not.
     """
+    assembly, file = wall.assembly, wall.case.origin
     faults = {
         "ties, props or passive fill": len(assembly.bars) > 0,
         "joints with cohesion or tensile strength": assembly.strong,
@@ -187,7 +196,8 @@ def check_simple(assembly: Assembly, *loads: FloatArray) -> None:
     if what is not None:
         raise InputError(
             f"the wall has {what}, which are not followed on updated geometry",
-            "Leave them out, or ask for the reactions as drawn",
+            f"Leave them out, or {instead}",
+            source=file,
         )
     for load in loads:
         moment = abs(load[assembly.free, 2])
@@ -196,6 +206,7 @@ def check_simple(assembly: Assembly, *loads: FloatArray) -> None:
         block = assembly.block_ids[assembly.free[int(np.argmax(moment))]]
         raise InputError(
             f"the load on {block} does not act at its centroid, and its arm changes as the block turns",
-            "Leave it out, or ask for the reactions as drawn",
+            f"Leave it out, or {instead}",
             "loads",
+            file,
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drystone.reactions import moving_blocks, proved_extremes
+from drystone.reactions import length_unit, moving_blocks, proved_extremes, reaction_unit, with_unit
 from drystone.walls import Wall
 from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
@@ -30,7 +30,7 @@ class ReactionPath:
     Attributes:
         gives_way: whether the supports move as prescribed; else they push, backwards.
         displacement: (k,) of the fastest vertex of the supports [length]; it scales with the compliance of the springs.
-        reaction: (k,) work of the contact forces on the prescribed motion: a force where that is a translation by one.
+        reaction: (k,) along the direction of the prescribed motion [force; moment of rotations alone].
         slipping, opened: (k,) numbers of gap points.
         constant_from: displacement from which the reaction is constant [length], or None.
         forces: (m, 3) contact forces at the end [force].
@@ -39,6 +39,7 @@ class ReactionPath:
         extremes: least and greatest reaction of associated flow.
         judgement: of the constant reaction, or None where there is none.
         reason: why there is none; empty where there is one.
+        units: of displacements and of reactions; empty where the wall has none.
     """
 
     gives_way: bool
@@ -53,6 +54,7 @@ class ReactionPath:
     extremes: tuple[float, float]
     judgement: Judgement | None
     reason: str
+    units: tuple[str, str]
 
     @property
     def value(self) -> float | None:
@@ -68,13 +70,16 @@ class ReactionPath:
     def sentence(self) -> str:
         """What was found, and what the judge says."""
         what = "gives way" if self.gives_way else "pushes back"
-        begins = f"The support {what}: its reaction goes from {self.reaction[0]:.7g} to {self.reaction[-1]:.7g}"
+        length, unit = self.units
+        last = with_unit(f"{self.reaction[-1]:.7g}", unit)
+        begins = f"The support {what}: its reaction goes from {self.reaction[0]:.7g} to {last}"
         if self.judgement is None:
             return f"{begins}. {self.reason}"
         low, high = self.extremes
+        constant_from = with_unit(f"{self.constant_from:.4g}", length)
         return (
-            f"{begins}, where it is constant from the displacement {self.constant_from:.4g} on; no equilibrium lies "
-            f"outside {low:.7g} to {high:.7g}. {self.judgement.sentence}"
+            f"{begins}, where it is constant from the displacement {constant_from} on; no equilibrium lies "
+            f"outside {low:.7g} to {with_unit(f'{high:.7g}', unit)}. {self.judgement.sentence}"
         )
 
     def as_json(self) -> dict[str, Any]:
@@ -144,6 +149,7 @@ def reaction_paths(
                 ends,
                 None if path.mechanism is None else result.judge,
                 path.reason,
+                (length_unit(wall), reaction_unit(wall)),
             )
         )
     return found[0], found[1]
@@ -192,4 +198,4 @@ def paths_figure(paths: tuple[ReactionPath, ...], head: str) -> Figure:
         ("gives way" if path.gives_way else "pushes", path.displacement, path.reaction, path.constant_from)
         for path in paths
     ]
-    return reaction_figure(curves, paths[0].extremes, head)
+    return reaction_figure(curves, paths[0].extremes, head, paths[0].units)

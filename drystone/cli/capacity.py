@@ -49,21 +49,22 @@ def capacity(
     """
     check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
-    warn(found)
+    told = warn(found)
     wall = Wall(found)
     answer = curve_of(wall, block, runs=runs)
     if isinstance(answer, str):
         if as_json:
-            print_json({"ultimate": None, "reason": answer})
+            print_json({"ultimate": None, "reason": answer} | told)
         else:
             say(answer)
         sys.exit(1)
     write_output(output, answer.as_csv, answer.plot)
     if as_json:
-        print_json(answer.as_json())
+        print_json(answer.as_json() | told)
     else:
         say(answer.sentence)
-        say(f"{'displacement':>14} {'multiplier':>14}")
+        head = "displacement" + f" [{answer.unit}]" * bool(answer.unit)
+        say(f"{head:>18} {'multiplier':>14}")
         for x, y in zip(answer.displacement.tolist(), answer.multiplier.tolist(), strict=True):
-            say(f"{x:14.7g} {y:14.7g}")
+            say(f"{x:18.7g} {y:14.7g}")
     sys.exit(0 if answer.accepted else 1)

@@ -78,7 +78,7 @@ def domain(
     check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
     loads = LoadPair.of(found, load_cases=() if load_cases is None else load_cases.split(","), live=live)
-    warn(loads.cases[0])
+    told = warn(*loads.cases)
     answer = domain_by(
         loads,
         method,
@@ -89,9 +89,11 @@ def domain(
     )
     write_output(output, answer.as_csv, answer.plot)
     if as_json:
-        print_json(answer.as_json())
+        print_json(answer.as_json() | told)
     else:
         say(answer.sentence)
+        if answer.points:
+            say(f"{'x':>14} {'y':>14}")
         for point in answer.points:
             where = (
                 "{:14.7g} {:14.7g}".format(*point.at)

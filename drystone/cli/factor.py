@@ -13,6 +13,7 @@ from drystone.cli.options import (
     catching,
     json_flag,
     known_methods,
+    left_out_of,
     print_json,
     runs_options,
     say,
@@ -61,7 +62,8 @@ def factor(
     """
     check_methods([method], "--method")
     (found,) = find_cases([case], None, folders)
-    warn(ReducedWall(found, 1.0, share))
+    besides = "" if share else left_out_of(found, "(--share 1 adds all of it)")
+    told = warn(ReducedWall(found, 1.0, share), also=besides)
     answer = factor_by(
         Wall(found),
         method,
@@ -71,7 +73,7 @@ def factor(
         runs=runs,
     )
     if as_json:
-        print_json(answer.as_json())
+        print_json(answer.as_json() | told)
     else:
         say(answer.sentence)
     sys.exit(0 if answer.value is not None and not answer.reason else 1)

@@ -269,10 +269,30 @@ def runs_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_runs
 
 
-def warn(case: Analysed) -> None:
-    """Tell what a person should hear about a wall, on standard error."""
-    for sentence in case.warnings:
-        say(f"drystone: {case.id}: {sentence}", err=True)
+def warn(*cases: Analysed, also: str = "") -> dict[str, list[str]]:
+    """Tell what a person should hear about walls, on standard error, each sentence once.
+
+    Args:
+        cases: one wall, or one under several loads.
+        also: what is to be said besides, if anything.
+
+    Returns:
+        The same as `warnings` of a JSON document.
+    """
+    told: dict[str, str] = {}
+    for case in cases:
+        for sentence in filter(None, (*case.warnings, also)):
+            told.setdefault(sentence, case.id)
+    for sentence, name in told.items():
+        say(f"drystone: {name}: {sentence}", err=True)
+    return {"warnings": list(told)}
+
+
+def left_out_of(case: Case, remedy: str = "") -> str:
+    """What a question about the dead load alone says where a wall has a live load, and how that acts; else nothing."""
+    if not case.assembly.has_live_load:
+        return ""
+    return f"the live load of the wall does not act: this question is of its dead load alone {remedy}".rstrip()
 
 
 TABLE = ".csv"

@@ -15,19 +15,22 @@ from drystone.cli.options import (
     catching,
     check_table_or_figure,
     json_flag,
+    left_out_of,
     print_json,
     runs_options,
     say,
     warn,
     write_output,
 )
-from drystone.reactions import least_known_reactions, reaction_unit, reactions
+from drystone.reactions import least_known_reactions, reaction_unit, reactions, with_unit
 from drystone.support_paths import FOLLOWS, paths_as_csv, paths_figure, reaction_paths
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError, first_few
-from harness.model.units import DIMENSIONLESS
+
+Besides = dict[str, list[str]] | None
+"""What a JSON document says besides its answer; None where text is printed."""
 
 SAID = {
     "least": "least reaction",
@@ -99,45 +102,45 @@ def reaction(
         raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
     check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
-    warn(found)
-    wall = Wall(found)
+    told = warn(found, also=left_out_of(found))
+    wall, besides = Wall(found), told if as_json else None
     if as_path:
-        _print_paths(wall, by, runs, output, as_json)
+        _print_paths(wall, by, runs, output, besides)
     elif until_collapse:
-        _print_collapse(wall, runs, output, as_json)
+        _print_collapse(wall, runs, output, besides)
     elif held:
-        _print_held(wall, runs, as_json)
+        _print_held(wall, runs, besides)
     else:
-        _print_reactions(wall, runs, without_dilatancy, as_json)
+        _print_reactions(wall, runs, without_dilatancy, besides)
 
 
-def _print_reactions(wall: Wall, runs: Runs, without_dilatancy: bool, as_json: bool) -> None:
+def _print_reactions(wall: Wall, runs: Runs, without_dilatancy: bool, besides: Besides) -> None:
     """Two reactions, each with the blocks that move."""
     answer = least_known_reactions(wall, runs=runs) if without_dilatancy else reactions(wall, runs=runs)
     names = ("giving_way", "pushing") if without_dilatancy else ("least", "greatest")
     if isinstance(answer, str):
-        _print_none(answer, names, as_json)
-    if as_json:
-        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
+        _print_none(answer, names, besides)
+    if besides is not None:
+        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)} | besides)
     else:
         unit = reaction_unit(wall)
         for name, each in zip(names, answer, strict=True):
-            value = f"{each.value:.7g} {unit}".rstrip()
+            value = with_unit(f"{each.value:.7g}", unit)
             moving = first_few(each.moving, 8) if each.moving else "no free block"
             say(f"The {SAID[name]} is {value}; in its mechanism move: {moving}. {each.judgement.sentence}")
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 
-def _print_held(wall: Wall, runs: Runs, as_json: bool) -> None:
+def _print_held(wall: Wall, runs: Runs, besides: Besides) -> None:
     """The brackets of a support that gives way and of one that pushes."""
     from drystone.held_reactions import held_reactions
 
     answer = held_reactions(wall, runs=runs)
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
-        _print_none(answer, names, as_json)
-    if as_json:
-        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
+        _print_none(answer, names, besides)
+    if besides is not None:
+        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)} | besides)
     else:
         unit = reaction_unit(wall)
         if unit:
@@ -148,19 +151,19 @@ def _print_held(wall: Wall, runs: Runs, as_json: bool) -> None:
     sys.exit(0 if all(each.judgement.accepted for each in answer) else 1)
 
 
-def _print_paths(wall: Wall, by: str | None, runs: Runs, output: Path | None, as_json: bool) -> None:
+def _print_paths(wall: Wall, by: str | None, runs: Runs, output: Path | None, besides: Besides) -> None:
     """The paths of a support that gives way and of one that pushes."""
     answer = reaction_paths(wall, by or "fe", runs=runs)
     names = ("giving_way", "pushing")
     if isinstance(answer, str):
-        _print_none(answer, names, as_json)
+        _print_none(answer, names, besides)
     write_output(output, lambda: paths_as_csv(answer), lambda: paths_figure(answer, wall.title))
-    if as_json:
-        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)})
+    if besides is not None:
+        print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)} | besides)
     else:
-        length, unit = wall.units["length"], reaction_unit(wall)
-        heads = ["displacement" + f" [{length}]" * (length != DIMENSIONLESS), "reaction" + f" [{unit}]" * bool(unit)]
         for each in answer:
+            length, unit = each.units
+            heads = ["displacement" + f" [{length}]" * bool(length), "reaction" + f" [{unit}]" * bool(unit)]
             say(each.sentence)
             say(f"{heads[0]:>18} {heads[1]:>18}")
             for x, y in zip(each.displacement.tolist(), each.reaction.tolist(), strict=True):
@@ -168,25 +171,25 @@ def _print_paths(wall: Wall, by: str | None, runs: Runs, output: Path | None, as
     sys.exit(0 if all(each.accepted for each in answer) else 1)
 
 
-def _print_collapse(wall: Wall, runs: Runs, output: Path | None, as_json: bool) -> None:
+def _print_collapse(wall: Wall, runs: Runs, output: Path | None, besides: Besides) -> None:
     """The displacement at collapse."""
     from drystone.settling import settled_until_collapse
 
     answer = settled_until_collapse(wall, runs=runs)
     if isinstance(answer, str):
-        _print_none(answer, ("stands", "falls"), as_json)
+        _print_none(answer, ("stands", "falls"), besides)
     write_output(output, answer.as_csv, answer.plot)
-    if as_json:
-        print_json(answer.as_json())
+    if besides is not None:
+        print_json(answer.as_json() | besides)
     else:
         say(answer.sentence)
     sys.exit(0 if answer.accepted else 1)
 
 
-def _print_none(reason: str, names: tuple[str, ...], as_json: bool) -> NoReturn:
+def _print_none(reason: str, names: tuple[str, ...], besides: Besides) -> NoReturn:
     """Say why there is no answer, and end."""
-    if as_json:
-        print_json(dict.fromkeys(names) | {"reason": reason})
+    if besides is not None:
+        print_json(dict.fromkeys(names) | {"reason": reason} | besides)
     else:
         say(reason)
     sys.exit(1)

@@ -15,6 +15,7 @@ from drystone.cli.options import (
     check_table_or_figure,
     finite,
     json_flag,
+    left_out_of,
     print_json,
     runs_options,
     say,
@@ -74,7 +75,7 @@ def shake(
     if least and multiple != 1.0:
         raise InputError("--least finds the multiple", "Leave --multiple out", "--multiple")
     (found,) = find_cases([case], None, folders)
-    warn(found)
+    told = warn(found, also=left_out_of(found))
     wall, asked = Wall(found), motion if pulse is None else pulse
     assert asked is not None
     if least:
@@ -87,7 +88,7 @@ def shake(
     if answer is not None and not answer.reason:
         write_output(output, answer.as_csv, answer.plot)
     if as_json:
-        print_json(document)
+        print_json(document | told)
     else:
         say(sentence)
         if answer is not None and not answer.reason:

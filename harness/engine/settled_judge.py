@@ -133,7 +133,7 @@ def _judge_end(
 def judge_settled(
     assembly: Assembly, displacement: float, places: FloatArray, reaction: float, forces: FloatArray, tolerance: float
 ) -> Judgement:
-    """Whether a wall can stand where the supports have moved by a multiple of their prescribed motion.
+    """Whether a wall can stand where the supports have moved in the direction of their prescribed motion.
 
     Args:
         assembly: the wall as drawn with its `support_motion`; dry joints, no bars, dead loads through the centroids.
@@ -207,7 +207,7 @@ def judge_settled_fall(
     *,
     bore: FloatArray,
 ) -> Judgement:
-    """Whether a wall falls where the supports have moved by a multiple of their prescribed motion and rest.
+    """Whether a wall falls where the supports have moved in the direction of their prescribed motion and rest.
 
     Args:
         assembly, displacement, places, tolerance: as for `judge_settled`.

@@ -76,8 +76,9 @@ class Assembly:
         brittle: (m,) whether a joint loses its constant part once it has opened at an end or slipped.
         bar_stiffness: (m,) zero for joints; of rows that are ties and props (`with_bars_as_joints`) the force for a
             unit of elongation [force/length], nan where none is given.
-        support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks; zero where supports rest, and on free
-            blocks.
+        support_motion: (n, 3) prescribed motion (ux, uy, omega) of fixed blocks as a direction, whose greatest
+            translation is one length or, of rotations alone, greatest rotation one radian; zero where supports rest,
+            and on free blocks.
         bars: ties and props between blocks; their prestress is part of the dead load.
     """
 

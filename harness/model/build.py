@@ -205,7 +205,10 @@ def _level_and_upright(loads: Loads) -> FloatArray:
 
 
 def _support_motion(wall: Wall, laid: Laid) -> FloatArray:
-    """(n, 3) motions of the supports, those of several settlements of a block added up.
+    """(n, 3) motions of the supports, those of several settlements of a block added up, as a direction.
+
+    The greatest translation of a settlement becomes one length; where none is given, the greatest rotation one radian.
+    So the work on the motion, the reaction along it, is a force, or of rotations alone a moment.
 
     Raises:
         InputError: a settlement names a block that is not fixed, or a group that there is not.
@@ -229,7 +232,8 @@ def _support_motion(wall: Wall, laid: Laid) -> FloatArray:
         motion[chosen] += np.stack(
             [settlement.translation[0] - turn * y, settlement.translation[1] + turn * x, np.full(len(x), turn)], axis=1
         )
-    return motion
+    longest = max(math.hypot(*settlement.translation) for settlement in wall.settlements)
+    return motion / (longest or max(abs(settlement.rotation) for settlement in wall.settlements))
 
 
 def _bars(wall: Wall, index: dict[str, int]) -> Bars:

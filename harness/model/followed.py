@@ -131,7 +131,7 @@ class FollowedWall(InDetails):
     """States of a wall with n blocks and m joints on updated geometry. k states, the last the furthest that stands.
 
     Attributes:
-        displacement: (k,) multiple of the prescribed motion of the supports, or length of the way of the fastest vertex
+        displacement: (k,) of the supports in the direction of their motion, or length of the way of the fastest vertex
             where they rest [length].
         value: (k,) the least reaction of moving supports there, or the greatest multiplier where they rest.
         places: (k, n, 3) displacements [length] and rotations [rad] of the blocks.
@@ -163,7 +163,7 @@ class SupportPath(InDetails):
 
     Attributes:
         displacement: (k,) of the fastest vertex of the supports [length]; it scales with the compliance of the springs.
-        reaction: (k,) work on the prescribed motion [force where that is a translation by one].
+        reaction: (k,) work on the direction of the prescribed motion [force; moment of rotations alone].
         slipping, opened: (k,) numbers of gap points.
         forces: (m, 3) contact forces at the last point [force].
         mechanism: (n, 3) motion of all blocks on the plateau, with the supports as prescribed; None without a plateau.

@@ -203,8 +203,8 @@ class Settlement(Strict):
 
     blocks: Blocks | None = Field(None, description="ids of fixed blocks")
     group: Name | None = Field(None, description="a group of fixed blocks")
-    translation: Point = Field((0.0, 0.0), description="(x, y); a vector of length 1 makes the reaction a force")
-    rotation: Number = Field(0.0, description="counter-clockwise [radian]; of length 1 it makes the reaction a moment")
+    translation: Point = Field((0.0, 0.0), description="(x, y), a direction of any length: the reaction is a force")
+    rotation: Number = Field(0.0, description="counter-clockwise [radian]; of rotations alone it is a moment")
     about: Point | None = Field(None, description="centre of the rotation [length]; else the centroid of each block")
 
     @model_validator(mode="after")

@@ -27,7 +27,7 @@ class MovedWall:
 
     Attributes:
         drawn: the wall before it moved.
-        displacement: multiple of the prescribed motion of its supports.
+        displacement: of its supports in the direction of their motion.
         places: (n, 3) displacements of the centroids [length] and rotations [rad].
         closed: (m, 2) ends of joints that still meet.
     """

@@ -45,7 +45,7 @@ class SettledSupports(Solver):
         if isinstance(found, str):
             return _none(f"The linear programme of the least reaction is {found} where the supports begin to move.")
         states = _states(found)
-        sentence = f"The wall stands up to {states.displacement[-1]:.7g} times the prescribed motion. {states.reason}"
+        sentence = f"The wall stands until its supports have moved by {states.displacement[-1]:.7g}. {states.reason}"
         return Answer(
             Status.OK, Finding.STANDS, sentence.strip(), forces=states.forces[0], forces_multiplier=0.0,
             path={"displacement": states.displacement.tolist(), "reaction": states.value.tolist()},

@@ -21,13 +21,20 @@ Curve = tuple[str, FloatArray, FloatArray, float | None]
 """A name, displacements (k,), reactions (k,), and the displacement from which the reaction is constant."""
 
 
-def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head: str) -> Figure:
+def labelled(name: str, unit: str) -> str:
+    """The name of an axis with its unit in brackets, if it has one."""
+    return f"{name} [{unit}]" if unit else name
+
+
+def reaction_figure(
+    curves: Sequence[Curve], extremes: tuple[float, float], head: str, units: tuple[str, str] = ("", "")
+) -> Figure:
     """Reactions against displacements [length] of supports, between the extremes of associated flow.
 
     Args:
         curves: one or more.
         extremes: least and greatest reaction.
-        head: the line above.
+        head: the line above; units: of displacements and of reactions, empty where there are none.
     """
     with style():
         page = Figure(figsize=(COLUMN, 0.8 * COLUMN), layout="constrained")
@@ -40,8 +47,8 @@ def reaction_figure(curves: Sequence[Curve], extremes: tuple[float, float], head
         for value in extremes:
             ax.axhline(value, color=COLOURS["ink"], linewidth=0.5, linestyle=":")
         ax.set_xlim(0.0, furthest)
-        ax.set_xlabel("displacement of the support")
-        ax.set_ylabel("reaction")
+        ax.set_xlabel(labelled("displacement of the support", units[0]))
+        ax.set_ylabel(labelled("reaction", units[1]))
         ax.set_title(head)
         ax.legend(frameon=False)
         ax.grid(linewidth=0.3)
@@ -52,7 +59,7 @@ def settled_figure(
     assembly: Assembly,
     places: FloatArray,
     curve_of: tuple[FloatArray, FloatArray],
-    labels: tuple[str, str] = ("displacement, in prescribed motions", "least reaction"),
+    labels: tuple[str, str],
 ) -> Figure:
     """A quantity against the displacement of a wall, and the wall where it last stands.
 

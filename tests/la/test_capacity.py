@@ -178,7 +178,7 @@ def test_command(tmp_path: Path):
     table, chart = tmp_path / "curve.csv", tmp_path / "curve.svg"
     done = command("capacity", path, "-o", table)
     assert done.returncode == 0, done.stderr
-    assert "falls to zero at the displacement 0.2 of the live load" in done.stdout
+    assert "falls to zero at the displacement 0.2 m of the live load" in done.stdout
     assert table.read_text(encoding="utf-8") == followed(block()).as_csv()
     done = command("capacity", path, "--block", "1", "--json", "-o", chart)
     listed = json.loads(done.stdout)

@@ -79,10 +79,11 @@ def test_command_prints_both_with_their_mechanisms(tmp_path: Path):
     [
         (DOWN, {"length": "mm", "force": "N"}, "N"),
         ({"blocks": ["right"], "rotation": -1, "about": [2, 0]}, {"length": "m", "force": "lbf"}, "lbf m"),
+        ({"blocks": ["right"], "translation": [0, -1], "rotation": 0.1}, {"length": "m", "force": "kN"}, "kN"),
         (DOWN, {"length": "1", "force": "1"}, ""),
     ],
 )
-def test_reaction_has_the_unit_of_a_force_and_with_a_rotation_of_a_moment(
+def test_reaction_has_the_unit_of_a_force_and_of_rotations_alone_that_of_a_moment(
     settlement: dict[str, Any], units: dict[str, str], unit: str
 ):
     assert reaction_unit(drystone.build_wall(data(settlement, units=units))) == unit
@@ -112,6 +113,21 @@ def test_settlements_add_up_and_turn_about_their_centre():
     np.testing.assert_allclose(wall.support_motion, expected, atol=1e-15)
     alone = built({"blocks": ["right"], "rotation": 1.0})
     np.testing.assert_allclose(alone.support_motion[1], [0.0, 0.0, 1.0], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("unit_motion", "size"),
+    [
+        ({"translation": [0, -1]}, 0.01),
+        ({"translation": [0.6, -0.8], "rotation": 0.5}, 25.0),
+        ({"rotation": -1.0}, 0.02),
+    ],
+)
+def test_a_settlement_is_a_direction_and_the_reaction_a_force(unit_motion: dict[str, Any], size: float):
+    """A centimetre down asks what a metre down asks; that the work on a centimetre is a force was said before."""
+    scaled = {name: (np.array(value) * size).tolist() for name, value in unit_motion.items()}
+    one, other = (built({"blocks": ["right"], **motion}) for motion in (unit_motion, scaled))
+    np.testing.assert_allclose(other.support_motion, one.support_motion, atol=1e-15)
 
 
 def test_a_wall_that_settles_has_a_key_of_its_own():

@@ -376,7 +376,7 @@ def test_a_wall_that_has_moved_is_drawn_with_its_holes_and_without_their_cuts():
     blocks = [ground, stone | {"holes": [hole]}]
     wall = drystone.build_wall({"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": blocks})
     places = np.array([[0.0, 0.0, 0.0], [0.5, 0.2, -0.2]])
-    ax = settled_figure(wall.assembly, places, (np.array([0.0, 1.0]), np.array([1.0, 0.5]))).axes[1]
+    ax = settled_figure(wall.assembly, places, (np.array([0.0, 1.0]), np.array([1.0, 0.5])), ("x", "y")).axes[1]
     rings = [len(path.to_polygons()) for drawn in ax.collections for path in drawn.get_paths()]
     assert rings == [1, 2]
     assert ax.patches[:] == []

@@ -1,0 +1,77 @@
+"""What a person hears of a wall stands in the JSON document too, and a question of the dead load alone says so."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.commands import drystone as command
+
+PUSH = {"live": {"body": [{"per_weight": [1, 0]}]}}
+DOWN = [{"blocks": ["ground"], "translation": [0, -1]}]
+
+
+def wall(tmp_path: Path, **more: Any) -> Path:
+    """A block on the ground whose unit weight is a density."""
+    blocks = [
+        {"id": "ground", "polygon": [[-1, -0.2], [2, -0.2], [2, 0], [-1, 0]], "fixed": True},
+        {"id": "block", "polygon": [[0, 0], [0.4, 0], [0.4, 2], [0, 2]]},
+    ]
+    path = tmp_path / "wall.json"
+    content = {"format": "wall/1", "unit_weight": 2000, "friction": 0.7, "blocks": blocks}
+    path.write_text(json.dumps(content | more), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "more"),
+    [
+        (["factor"], {"loads": PUSH}),
+        (["domain"], {}),
+        (["capacity"], {"loads": PUSH}),
+        (["shake", "--pulse", "0.1:0.1"], {}),
+        (["shake", "--pulse", "1:0.1", "--least"], {}),
+        (["reaction"], {"settlements": DOWN}),
+        (["reaction", "--held"], {"settlements": DOWN}),
+        (["reaction", "--path"], {"settlements": DOWN}),
+        (["reaction", "--without-dilatancy"], {"settlements": DOWN}),
+        (["reaction", "--until-collapse"], {"settlements": DOWN}),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_warnings_stand_in_every_json_document(arguments: list[str], more: dict[str, Any], tmp_path: Path):
+    done = command(arguments[0], wall(tmp_path, **more), *arguments[1:], "--json")
+    told = json.loads(done.stdout)["warnings"]
+    assert 'the unit weight of block "block" is 2000 kN/m3' in told[0]
+    assert told[0] in done.stderr
+
+
+def test_domain_warns_of_both_load_cases(tmp_path: Path):
+    def water(unit_weight: float) -> dict[str, Any]:
+        level = {"level": 2, "unit_weight": unit_weight}
+        return {"live": {"pressures": [{"from": [0, 0], "to": [0, 2], "water": level}]}}
+
+    path = wall(tmp_path, unit_weight=20, load_cases={"water": water(9.81), "flood": water(1000)})
+    told = json.loads(command("domain", path, "--json").stdout)["warnings"]
+    assert len(told) == 1
+    assert "unit weight of 1000 kN/m3" in told[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "more"),
+    [(["factor"], {}), (["shake", "--pulse", "0.1:0.1"], {}), (["reaction"], {"settlements": DOWN})],
+)
+def test_a_question_of_the_dead_load_says_that_the_live_load_rests(
+    arguments: list[str], more: dict[str, Any], tmp_path: Path
+):
+    loaded = command(arguments[0], wall(tmp_path, loads=PUSH, **more), *arguments[1:])
+    assert "the live load of the wall does not act" in loaded.stderr
+    without = command(arguments[0], wall(tmp_path, **more), *arguments[1:])
+    assert "does not act" not in without.stderr
+
+
+def test_a_share_of_the_live_load_acts(tmp_path: Path):
+    assert "does not act" not in command("factor", wall(tmp_path, loads=PUSH), "--share", "0.1").stderr
