@@ -4,8 +4,9 @@ The joint law gives the yield slacks y1, y2 of its two ends and its shear streng
 shear utilisation is |s| / strength, the eccentricity utilisation |y1 - y2| / (F (1 - F / F0)), F = y1 + y2: in a dry
 joint 2 |e| / L, and one in every joint where an end is about to open or to crush; F0 is the force that crushes it
 evenly. The crushing utilisation is F / (F0 (1 - |y1 - y2| / F)): without tensile strength the edge stress over the
-compressive strength. The edge stress is that of the rectangular stress block, N / (t (L - 2 |e|)), of the face length L
-and thickness t (Heyman 1966; EN 1996-1-1, 6.1.2.2).
+compressive strength. The edge stress is that of the rectangular stress block: without tensile strength
+N / (t (L - 2 |e|)), of the face length L and thickness t (Heyman 1966; EN 1996-1-1, 6.1.2.2). With it the rest of the
+face pulls with f_t, as in the joint law: F / (t (L - 2 |e_F|)) - f_t, with the eccentricity e_F of F.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class JointMargins:
         shear_utilisation: |s| / shear strength; exists where there is a strength.
         eccentricity_utilisation: see the module; exists where the ends have a slack.
         crushing_utilisation: see the module; exists where the joint crushes and its force acts on a width.
-        edge_stress: greatest stress [force/length^2]; exists where N > 0 acts on a width, not at an edge.
+        edge_stress: greatest stress [force/length^2]; exists where N > 0 and its block has a width.
     """
 
     normal: FloatArray
@@ -78,9 +79,11 @@ def joint_margins(
     small = negligible * assembly.force_scale
     eccentricity = 0.5 * assembly.length * _share(forces[:, 1] - forces[:, 0], normal, small)
     length = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
-    width = length - 2.0 * abs(eccentricity)
     pressed, uneven = slacks.sum(axis=1), abs(slacks[:, 0] - slacks[:, 1])
-    whole = assembly.crushing + 2.0 * assembly.law.constant[:, 0]
+    tension = 2.0 * assembly.law.constant[:, 0]
+    whole = assembly.crushing + tension
+    strip = length - assembly.length * _share(uneven, pressed, small)  # width of the stress block on the face
+    stress = _share(pressed / thickness, strip, negligible * length) - tension / (thickness * length)
     free = 1.0 - _share(uneven, pressed, small)  # the part of the face that the stress block covers
     block = np.multiply(whole, free, out=np.full(len(whole), np.nan), where=np.isfinite(whole) & (free > negligible))
     return JointMargins(
@@ -92,7 +95,7 @@ def joint_margins(
         _share(abs(shear), strength, small),
         _share(uneven, pressed * (1.0 - pressed / whole), small),
         _share(pressed, block, 0.0),
-        _share(normal / thickness, width, negligible * length),
+        np.where(normal > small, stress, np.nan),
     )
 
 
@@ -234,8 +237,8 @@ JOINTS: tuple[JointColumn, ...] = (
     _number(
         "edge_stress",
         "force/length2",
-        "greatest stress N / (t (L - 2 e)) of the rectangular stress block; empty where N acts at an edge, "
-        "which has no width",
+        "greatest stress of the rectangular stress block, in a joint without tensile strength N / (t (L - 2 e)); empty "
+        "where the block has no width",
     ),
     _number("length", "length", "of the face, L", "L"),
     _number("thickness", "length", "out of plane, t", "t"),

@@ -113,6 +113,20 @@ def test_a_joint_that_is_crushed_evenly_has_used_all_of_its_strength():
     assert row.number("edge_stress") == pytest.approx(10.0)
 
 
+@pytest.mark.parametrize("push", [0.1, 0.3, 0.5])
+def test_tension_on_the_rest_of_the_face_relieves_its_edge(push: float):
+    """sigma w - f_t (L - w) = N and sigma w (L - w) / 2 + f_t w (L - w) / 2 = M; the edge stood at 7 f_c, uncrushed."""
+    tension, strength = 2.0, 200.0
+    joint = block(push=push, cohesion=100.0, tensile_strength=tension, compressive_strength=strength)
+    found = margins_of(joint)
+    stress = float(found.edge_stress[0])
+    width = (WEIGHT + tension * WIDTH) / (stress + tension)
+    moment = 0.5 * (stress + tension) * width * (WIDTH - width)
+    assert moment == pytest.approx(push * HEIGHT / 2.0)
+    assert found.crushing_utilisation == pytest.approx((stress + tension) / (strength + tension))
+    assert stress < strength
+
+
 @pytest.mark.parametrize("push", [0.0, 0.02, 0.05])
 def test_a_joint_uses_of_its_compressive_strength_what_its_edge_stress_is(push: float):
     """Pressed evenly to nine tenths it stood last, at utilisation 0."""
