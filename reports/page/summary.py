@@ -157,7 +157,7 @@ def wall_findings(item: CaseResults) -> str:
     called = f"{least.method.upper()}, {proof_of(item, least).label}"
     way = direction_in_words(item.case)
     under = f" under the live load {way}" if way in ("to the left", "to the right") else ""
-    said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)}{under} ({called})"
+    said = f"{item.case.id} collapses at {numbers.multiplier(least.multiplier)}{under}{_counting(item)} ({called})"
     sentences = [f"{said}{'; ' + others if others else ''}.", _agreement(item)]
     if least.mechanism is not None:
         mechanism = np.asarray(least.mechanism, dtype=float)
@@ -169,6 +169,13 @@ def wall_findings(item: CaseResults) -> str:
     if associated is not None and _above(associated, least):
         sentences.append(f"Do not rely on the associated maximum {_height(associated, least)}.")
     return " ".join(filter(None, sentences))
+
+
+def _counting(item: CaseResults) -> str:
+    """What a multiplier counts of the strength of joints, after it; empty of dry joints."""
+    if not item.case.assembly.strong:
+        return ""
+    return " as its joints break" if item.case.assembly.breaks else " with the strength of its joints"
 
 
 def _above(second: Result, first: Result) -> bool:

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import drystone as package
 from drystone.cli import printing
 from harness.model.comparison import CaseResults
 from harness.model.live_load import reversed_live
-from harness.model.method import Finding
+from harness.model.method import Finding, Status
 from harness.model.result import Result
 from harness.model.support_reactions import out_of_balance, support_reactions
 from reports.appendix import render, write_appendix
@@ -104,6 +105,22 @@ def test_the_lower_of_two_directions_governs_the_appendix():
     assert '<th scope="row">to the left</th><td>0.29947 (la)</td><td>least known</td><td>yes</td>' in text
     assert "For safety use 0.29947" in both_ways(0.29947, 0.38236)
     assert "under the live load to the right" in both_ways(0.29947, 0.38236)
+
+
+def test_no_load_case_governs_the_appendix_while_one_has_no_answer():
+    """It said that the lowest multiplier governs, beside the sentence that which one governs is not known."""
+    push = {"live": {"body": [{"per_weight": [1, 0]}]}}
+    stone = {"id": "a", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    ground = {"id": "g", "fixed": True, "polygon": [[-1, -1], [2, -1], [2, 0], [-1, 0]]}
+    wall = {"format": "wall/1", "unit_weight": 20, "friction": 0.5, "blocks": [ground, stone]}
+    cases = package.build_wall(wall | {"load_cases": {"known": push, "open": push}}).load_cases
+    known, unknown = (each.case for each in cases.values())
+    lost = samples.failed(unknown, "la", Status.NOT_CONVERGED, "It gave up.")
+    items = [CaseResults(known, [samples.solved(known, "la", 0.5)]), CaseResults(unknown, [lost])]
+    text = re.sub(r"\s+", " ", render(replace(samples.typical(), cases=items)))
+    assert "2 load cases were analysed; which one governs is not known, and all further results are for that of" in text
+    assert "Which load case governs is not known: there is no accepted answer to open." in text
+    assert "the lowest multiplier governs" not in text
 
 
 def test_one_direction_alone_is_named():

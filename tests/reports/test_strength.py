@@ -12,7 +12,7 @@ import drystone
 from harness.formats.exporting import matrices
 from harness.model.build import build
 from harness.model.wall import Wall
-from reports.appendix import assumptions
+from reports.appendix import assumptions, render
 from reports.findings.strength import strength_text
 from tests.commands import drystone as command
 from tests.walls import assembly, case, stack, wall_data
@@ -45,6 +45,15 @@ def test_appendix_assumes_the_strength_that_joints_have_and_no_other():
     assert "cohesion c A 1 kN" in strong[1]
     assert "brittle" in strong[1]
     assert dry[1].startswith("Joints are dry")
+
+
+def test_the_appendix_is_headed_by_the_number_to_use():
+    """The multiplier with the strength of the joints, .75, stood above the residual one, .5, in larger letters."""
+    compared = drystone.compare(drystone.library_wall("bonded-block-slides"), ["la"], isolated=False)
+    text = render(compared.run)
+    head = text[text.index('<p class="result">') :]
+    assert head.startswith('<p class="result">For safety use 0.50000 (la), the residual multiplier')
+    assert "collapses at 0.75000 under the live load to the right with the strength of its joints (LA, " in head
 
 
 def test_results_have_the_residual_multiplier(written: tuple[str, list[dict[str, str]]]):
