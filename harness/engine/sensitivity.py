@@ -119,6 +119,6 @@ def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:
 
 def _said(result: Result) -> str:
     if result.status is not Status.OK:
-        return str(result.status)
+        return f"{result.status}: {result.sentence}"
     value = str(result.finding) if result.multiplier is None else f"{result.multiplier:.6g}"
     return value if result.judge.accepted else f"{value} ({result.judge.outcome.replace('_', ' ')})"

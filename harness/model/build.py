@@ -147,7 +147,7 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
         *contact_warnings(assembly, laid.joints.corners, size),
         *near_misses(names, laid.joints.missed, laid.joints.missed_gap, laid.joints.gap),
         *force_warnings(assembly, wall.loads, size),
-        *input_warnings(wall, blocks, assembly),
+        *input_warnings(wall, blocks, assembly, laws.given),
     ]
     if laid.joints.trusted < len(interfaces):
         warnings += interface_warnings(assembly, size, laid.joints.trusted)

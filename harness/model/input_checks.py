@@ -8,7 +8,7 @@ from itertools import islice
 
 import numpy as np
 
-from harness.model.assembly import Assembly
+from harness.model.assembly import Assembly, FloatArray
 from harness.model.errors import MOST_NAMED, Hints, first_few
 from harness.model.friction_fields import Friction
 from harness.model.load_fields import Load
@@ -28,6 +28,11 @@ _UNIT_WEIGHTS = (5.0, 35.0)
 """Unit weights of masonry [kN/m3]: pumice and adobe have 6 and more, basalt 30."""
 _LOAD_UNIT_WEIGHTS = (0.1, 35.0)
 """Unit weights of water, earth and fill [kN/m3]: light fill of foam has 0.2."""
+_STRENGTHS = {"cohesion": (2, 0.0, 1e4), "tensile strength": (3, 0.0, 1e4), "compressive strength": (4, 100.0, 5e5)}
+"""Column of the joint laws, least and greatest value [kN/m2]: glue of resin bears 10 N/mm2, earth crushes under 0.3 and
+granite under 300. Little cohesion or tension is that of poor mortar."""
+_N_PER_MM2 = 1000.0
+"""A newton on a square millimetre, in which strengths are tabled [kN/m2]."""
 _GREATEST_GRAVITY = 5.0
 """Multiple of the weight beyond which an acceleration in m/s2 is likelier: g is 9.8, factors of dead load below 2."""
 SIZES = (0.05, 250.0)
@@ -47,10 +52,15 @@ def thickness_of(block: Block, wall: Wall) -> float:
     return wall.thickness if wall.thickness is not None else wall.units.metre
 
 
-def input_warnings(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
-    """Sentences about frictions, unit weights, sizes and loads of a wall that were hardly meant."""
+def input_warnings(wall: Wall, blocks: list[Block], assembly: Assembly, laws: FloatArray) -> list[str]:
+    """Sentences about frictions, strengths, unit weights, sizes and loads of a wall that were hardly meant.
+
+    Args:
+        wall, blocks, assembly: the wall; laws: (m, 6) what `JointLaws` has of its joints.
+    """
     return [
         *_friction_slips(wall, assembly),
+        *_strength_slips(wall, laws),
         *_rule_slips(wall, blocks, assembly),
         *_unit_weight_slips(wall, blocks),
         *_size_slips(wall, blocks, assembly),
@@ -81,6 +91,30 @@ def _friction_slips(wall: Wall, assembly: Assembly) -> list[str]:
         sentences.append(
             f"friction_angle is {small[0]:g} degrees, a coefficient of {math.tan(math.radians(small[0])):.2g}: a "
             f'coefficient? Write "friction": {small[0]:g}'
+        )
+    return sentences
+
+
+def _strength_slips(wall: Wall, laws: FloatArray) -> list[str]:
+    """Strengths of joints that no masonry has: mostly they are in N/mm2."""
+    if wall.units.dimensionless:
+        return []
+    name = f"{wall.units.force}/{wall.units.length}2"
+    per_unit = KILONEWTONS[wall.units.force] / METRES[wall.units.length] ** 2
+    sentences = []
+    for what, (column, least, most) in _STRENGTHS.items():
+        given = laws[:, column]
+        odd = np.isfinite(given) & (given > 0.0) & ((given * per_unit < least) | (given * per_unit > most))
+        if not odd.any():
+            continue
+        value = float(given[odd][0])
+        range_ = f"at most {most / per_unit:g}" if least == 0.0 else f"{least / per_unit:g} to {most / per_unit:g}"
+        remedy = "the unit?"
+        if least <= value * _N_PER_MM2 <= most:
+            remedy = f"if it is meant in N/mm2, write {value * _N_PER_MM2 / per_unit:g}"
+        sentences.append(
+            f"the {what} is {value:g} {name} in {odd.sum()} of {len(odd)} interfaces, and masonry has {range_} {name}: "
+            f"{remedy}"
         )
     return sentences
 

@@ -18,7 +18,7 @@ from harness.model.assembly import BoolArray, FloatArray, IntArray
 from harness.model.blocks import polygons_of, support_faults, weight_of, written_out
 from harness.model.build import Built, build
 from harness.model.contacts import check_gap
-from harness.model.errors import MOST_WORDED, InputError, Spot, sorted_out, uncounted
+from harness.model.errors import MOST_WORDED, InputError, Spot, first_few, sorted_out, uncounted
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
 from harness.model.laid import lay
@@ -127,15 +127,16 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
         kept = [apart[k] for k in polygons]
         found, doubts, joints = _lying(wall, kept, list(polygons.values()), _hulls(blocks, polygons))
         faults += found
-    built = None
+    built, warnings = None, []
     if not faults and not before:
         try:
-            built = _first_built(wall, name, blocks, joints)
+            built, warnings = _built(wall, name, blocks, joints)
         except InputError as error:
             faults += error.faults
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
     # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
-    warnings = (*wall.doubts, *unknown_in_rules(wall, blocks)) if built is None else built.warnings
+    if built is None:
+        warnings = [*wall.doubts, *unknown_in_rules(wall, blocks)]
     marks += [FaultMark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)
@@ -143,16 +144,25 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
 
 
-def _first_built(wall: Wall, name: str, blocks: list[Block], joints: Joints | None) -> Built:
-    """The wall under the first of its load cases, all of which can be built, or as it is if it has none.
+def _built(wall: Wall, name: str, blocks: list[Block], joints: Joints | None) -> tuple[Built, list[str]]:
+    """The wall under the first of its load cases, or as it is if it has none, and the warnings of all of them.
 
     Its blocks have no faults, and the joints between them are known, unless no two blocks can have one.
     """
     known, first = named_loads(wall), None
     laid = lay(wall, blocks, joints)
-    for _, _, built in each_built(wall, dict.fromkeys(known, name), known, laid) if known else ():
+    concerned: dict[str, list[str]] = {}
+    for load_case, _, built in each_built(wall, dict.fromkeys(known, name), known, laid) if known else ():
         first = first or built
-    return first or build(wall, name, laid)
+        for sentence in built.warnings:
+            concerned.setdefault(sentence, []).append(load_case)
+    if first is None:
+        alone = build(wall, name, laid)
+        return alone, list(alone.warnings)
+    return first, [
+        sentence if len(names) == len(known) else f"load case {first_few(names, 5)}: {sentence}"
+        for sentence, names in concerned.items()
+    ]
 
 
 def _outlines(blocks: Sequence[Block]) -> tuple[list[InputError], dict[int, FloatArray]]:

@@ -58,7 +58,8 @@ def test_wall_that_cannot_be_built_is_shown_over_the_tolerance_all_the_same(tmp_
 def test_a_method_that_eats_memory_costs_its_answer_alone():
     run = CliRunner().invoke(main, ["validate", "wall-21", "--method", "de", "--memory", "16", "--json"])
     assert run.exit_code == 0
-    assert [plateau["answer"] for plateau in json.loads(run.stdout)["tolerances"]] == ["out_of_memory"]
+    (plateau,) = json.loads(run.stdout)["tolerances"]
+    assert plateau["answer"] == "out_of_memory: It was stopped at the limit of 16 MiB of memory."
 
 
 def square(name: str, x: float, y: float, size: float = 1.0, **more: Any) -> dict[str, Any]:
@@ -187,3 +188,26 @@ def test_a_case_is_looked_over_as_its_wall_file_is():
     unknown = CliRunner().invoke(main, ["validate", "toppel"])
     assert (unknown.exit_code, unknown.stdout) == (2, "")
     assert 'no case is called "toppel"' in unknown.stderr
+
+
+def test_doubts_of_all_load_cases_are_listed_and_a_refusal_has_its_reason(tmp_path: Path):
+    """Only the first load case was looked at, and a wall that every method refuses was "refused" and no more."""
+    blocks = [
+        {"id": "ground", "polygon": [[-1, -1], [2, -1], [2, 0], [-1, 0]], "fixed": True},
+        {"id": "a", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]]},
+    ]
+
+    def water(unit_weight: float) -> dict[str, Any]:
+        level = {"level": 1, "unit_weight": unit_weight}
+        return {"live": {"pressures": [{"from": [0, 0], "to": [0, 1], "water": level}]}}
+
+    wall = {"format": "wall/1", "unit_weight": 2000, "friction": 0.5, "blocks": blocks}
+    wall |= {"load_cases": {"river": water(9.81), "flood": water(1000)}}
+    wall |= {"settlements": [{"blocks": ["ground"], "translation": [0, -1]}]}
+    code, told = validated(tmp_path, wall)
+    assert code == 0
+    assert [doubt["number"] for doubt in told["doubts"]] == [1, 2]
+    assert told["doubts"][0]["text"].startswith("the unit weight of block")
+    assert "load case flood: loads.live.pressures[0] has a unit weight of 1000 kN/m3" in told["doubts"][1]["text"]
+    refusal = "refused: la-associated takes supports at rest only; ground moves."
+    assert told["tolerances"][0]["answer"].startswith(refusal)

@@ -318,3 +318,41 @@ def test_a_tie_that_never_yields_is_told(yield_force: float, told: bool):
         ]
         * told
     )
+
+
+@pytest.mark.parametrize(
+    ("strength", "units", "said"),
+    [
+        ({"compressive_strength": 5}, {}, "is 5 kN/m2 in 1 of 1 interfaces, and masonry has 100 to 500000 kN/m2: "),
+        ({"compressive_strength": 5}, {}, "if it is meant in N/mm2, write 5000"),
+        (
+            {"compressive_strength": 0.005},
+            {"length": "mm", "force": "N"},
+            "masonry has 0.1 to 500 N/mm2: the unit?",
+        ),
+        (
+            {"cohesion": 2e5, "tensile_strength": 1e5},
+            {},
+            "the cohesion is 200000 kN/m2 in 1 of 1 interfaces, and masonry",
+        ),
+        ({"cohesion": 2e5, "tensile_strength": 1e5}, {}, "the tensile strength is 100000 kN/m2"),
+    ],
+)
+def test_a_strength_that_no_masonry_has_is_told(strength: dict[str, Any], units: dict[str, str], said: str):
+    """A wall whose joints crush under its own weight falls, and nothing said that 5 kN/m2 were meant as N/mm2."""
+    wall = data(**strength) | ({"units": units, "unit_weight": 2e-5} if units else {})
+    assert any(said in sentence for sentence in warnings_of(scaled(wall, 1000.0) if units else wall))
+
+
+@pytest.mark.parametrize(
+    ("strength", "units"),
+    [
+        ({"compressive_strength": 5000}, {"length": "m", "force": "kN"}),
+        ({"compressive_strength": 5}, {"length": "mm", "force": "N", "unit_weight": "kN/m3"}),
+        ({"compressive_strength": 5}, {"length": "1", "force": "1"}),
+        ({"cohesion": 100, "tensile_strength": 50}, {"length": "m", "force": "kN"}),
+    ],
+)
+def test_a_strength_of_masonry_and_one_without_units_are_not(strength: dict[str, Any], units: dict[str, str]):
+    wall = scaled(data(**strength, units=units), 1000.0 if units["length"] == "mm" else 1.0)
+    assert not any("strength" in sentence or "cohesion" in sentence for sentence in warnings_of(wall))
