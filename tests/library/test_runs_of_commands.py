@@ -68,7 +68,7 @@ def test_a_command_outlives_a_run_that_is_cut_off(tmp_path: Path):
     done = command("reaction", path, "--until-collapse", "--seconds", 1e-6)
     assert (done.returncode, done.stdout) == (1, f"{why}\n"), done.stderr
     done = command("reaction", path, "--until-collapse", "--seconds", 1e-6, "--json")
-    assert json.loads(done.stdout) == {"stands": None, "falls": None, "reason": why}
+    assert json.loads(done.stdout) == {"stands": None, "falls": None, "reason": why, "warnings": []}
 
 
 @pytest.mark.parametrize("words", [("reaction",), ("reaction", "--held"), ("reaction", "--path")], ids=" ".join)
