@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import PrivateAttr
 
-from drystone.walls import Wall
+from drystone.walls import Wall, checked_wall
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
@@ -190,6 +190,7 @@ def analyse_by(
     Raises:
         InputError: as `analyse`.
     """
+    wall = checked_wall(wall)
     if isinstance(method, str):
         check_methods([method], "method")
         loaded = load_method(method)
@@ -231,6 +232,7 @@ def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judge
         answer: forces (m, 3) and a mechanism (n, 3) in the conventions and the order of `Assembly`; or a result.
         tolerance: the largest relative residual that is accepted.
     """
+    wall = checked_wall(wall)
     if isinstance(answer, Answer):
         answer = result_of(answer, wall.assembly, case=wall.name, method="foreign", family="foreign")
     return judge_result(wall.assembly, answer, tolerance)

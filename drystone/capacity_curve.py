@@ -15,7 +15,7 @@ import numpy as np
 
 from drystone.reactions import length_unit, with_unit
 from drystone.settling import check_simple, run_followed
-from drystone.walls import Wall
+from drystone.walls import Wall, checked_wall
 from harness.engine.pipeline import Runs
 from harness.engine.settled_judge import judge_every_state, states_in_words
 from harness.model.assembly import Assembly, FloatArray
@@ -124,6 +124,7 @@ def capacity(
         InputError: no block is called so or the wall has no live load; strength, bars, loads beside the centroids, or
             supports that move.
     """
+    wall = checked_wall(wall)
     assembly = wall.assembly
     _check(wall, block)
     settings = {} if steps is None else steps.model_dump(mode="json")

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drystone.boundary import FAR, Boundary, BoundaryPoint, Stopped
-from drystone.walls import Wall
+from drystone.walls import Wall, checked_wall
 from harness.engine.judge import judge
 from harness.engine.measures import magnitudes
 from harness.engine.pipeline import Runs
@@ -288,7 +288,7 @@ def domain(
     Raises:
         InputError: an unknown method or setting, loads that are not two, or a wall that the method refuses.
     """
-    pair = LoadPair.of(wall.case, load_cases=load_cases, live=live)
+    pair = LoadPair.of(checked_wall(wall).case, load_cases=load_cases, live=live)
     runs = Runs(Limits(seconds, memory_bytes) if isolated else None, store)
     return domain_by(pair, method, settings, accuracy=accuracy, most=most, runs=runs)
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from drystone.walls import Wall
+from drystone.walls import Wall, checked_wall
 from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, check_taken, takers
@@ -247,6 +247,7 @@ def factor_by(
     Raises:
         InputError: as `factor`.
     """
+    wall = checked_wall(wall)
     check_methods([method], "method")
     loaded = load_method(method)
     validate(loaded.Settings, settings, "settings")

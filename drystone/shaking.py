@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drystone.settling import check_simple
-from drystone.walls import Wall
+from drystone.walls import Wall, checked_wall
 from harness.engine.judge import judge
 from harness.engine.motion_judge import judge_time_history
 from harness.engine.pipeline import Runs
@@ -183,7 +183,7 @@ def shake(
     Raises:
         InputError: a motion or a wall that cannot be followed, or an engine that does not lose e^2 at an impact.
     """
-    return Shaker(wall, motion, gravity, steps, runs).shaken(multiple)
+    return Shaker(checked_wall(wall), motion, gravity, steps, runs).shaken(multiple)
 
 
 class Shaker:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drystone.shaking import Shaker, Shaking
-from drystone.walls import Wall
+from drystone.walls import Wall, checked_wall
 from harness.engine.pipeline import Runs
 from harness.model.assembly import FloatArray
 from harness.model.errors import InputError
@@ -109,7 +109,7 @@ def least_shaking(
     """
     if not 1e-9 <= accuracy < 1.0:
         raise InputError(f"the accuracy {accuracy:g} is out of range", "Give one from 1e-9 to below 1", "accuracy")
-    search, reason = _Multiples(Shaker(wall, motion, gravity, steps, runs)), ""
+    search, reason = _Multiples(Shaker(checked_wall(wall), motion, gravity, steps, runs)), ""
     try:
         search.climb(search.start())
         search.bisect(accuracy)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -125,12 +126,29 @@ def build_wall(document: Mapping[str, Any] | Description, name: str = "wall") ->
     Raises:
         InputError: naming the element and what would be right.
     """
+    if not isinstance(document, Description | Mapping):
+        remedy = "Give the data of a wall; drystone.read_wall reads a file"
+        raise InputError(f"{document!r:.80} is no wall", remedy, "document")
     wall = document if isinstance(document, Description) else reading.parse_wall(dict(document), name)
     title = wall.title or name
     file = CaseFile(id=id_of(name), title=title, source=str(wall.metadata.get("source", "the user")))
     made = Wall(Case(file, wall, name))
     _check(made.case)
     return made
+
+
+def checked_wall(given: object) -> Wall:
+    """What a user gives as a wall, which must be one.
+
+    Raises:
+        InputError: it is something else, as the path of a file.
+    """
+    if isinstance(given, Wall):
+        return given
+    called = f"{given!r:.80}"
+    path = isinstance(given, str | Path)
+    remedy = f"Give drystone.read_wall({called})" if path else "Give what read_wall or build_wall returns"
+    raise InputError(f"{called} is no wall", remedy, "wall")
 
 
 def _check(case: Case) -> None:
@@ -152,6 +170,10 @@ def new_wall(kind: str, **numbers: Any) -> Wall:
 
     if kind not in STARTS:
         raise InputError(f'no kind of wall is called "{kind}"', f"{did_you_mean(kind, STARTS)} {', '.join(STARTS)}")
+    known = signature(STARTS[kind]).parameters
+    if unknown := [name for name in numbers if name not in known]:
+        remedy = f"{did_you_mean(unknown[0], known)} There are: {', '.join(known)}".strip()
+        raise InputError(f'it has no number "{unknown[0]}"', remedy, kind)
     try:
         return build_wall(STARTS[kind](**numbers), kind)
     except (TypeError, ValueError) as error:

@@ -127,7 +127,8 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
         kept = [apart[k] for k in polygons]
         found, doubts, joints = _lying(wall, kept, list(polygons.values()), _hulls(blocks, polygons))
         faults += found
-    built, warnings = None, []
+    built: Built | None = None
+    warnings = [*wall.doubts]
     if not faults and not before:
         try:
             built, warnings = _built(wall, name, blocks, joints)
@@ -136,7 +137,7 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
     # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
     if built is None:
-        warnings = [*wall.doubts, *unknown_in_rules(wall, blocks)]
+        warnings += unknown_in_rules(wall, blocks)
     marks += [FaultMark("doubt", "", text) for text in warnings if NEAR_MISS not in text]
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)

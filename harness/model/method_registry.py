@@ -120,11 +120,14 @@ def checked_method(found: object, element: str = "method") -> Method:
     """What a user gives as a method, which must be one; `element` is what named it.
 
     Raises:
-        InputError: it does not inherit from `Method`.
+        InputError: it does not inherit from `Method`, or lacks what that has no default of.
     """
     if not isinstance(found, Method):
         hint = "Give an object of a class that inherits from `harness.model.method.Method`"
         raise InputError(f"{found!r:.80} is no method", hint, element)
+    if lacking := [name for name in Method.__annotations__ if not hasattr(found, name)]:
+        hint = f"Give its class {', '.join(lacking)}; `harness.model.method.Method` says what each is"
+        raise InputError(f"it has no {lacking[0]}", hint, element)
     return found
 
 

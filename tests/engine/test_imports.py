@@ -12,8 +12,10 @@ from pkgutil import resolve_name
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 import drystone
+from drystone.cli.main import main
 from harness.engine.preload import shipped
 from harness.engine.provenance import code_version
 from harness.model.assembly import Assembly
@@ -112,6 +114,27 @@ def test_of_two_packages_that_bring_a_method_of_one_name_none_answers(monkeypatc
     version = code_version.__wrapped__("la")
     monkeypatch.setattr("harness.engine.provenance.method_points", lambda: (own,))
     assert code_version.__wrapped__("la") != version, "a refusal would be found in the store when one is gone"
+
+
+class Nameless(Method):
+    """A method whose author stopped half-way."""
+
+    name = "nameless"
+    title = "of no family"
+
+    def solve(self, assembly: Assembly, settings: Any) -> Answer:
+        raise NotImplementedError
+
+
+def test_a_method_that_lacks_what_it_must_say_is_refused_and_the_list_goes_on(monkeypatch: pytest.MonkeyPatch):
+    """`drystone list methods` ended in an AttributeError and listed none."""
+    point = EntryPoint("nameless", "tests.engine.test_imports:Nameless", GROUP)
+    monkeypatch.setattr("harness.model.method_registry.method_points", lambda: (point,))
+    with pytest.raises(InputError, match=r"method nameless: it has no family. Give its class family, tolerance;"):
+        load_method("nameless")
+    done = CliRunner().invoke(main, ["list", "methods"])
+    assert done.exit_code == 0
+    assert "it has no family" in " ".join(done.stdout.split())
 
 
 @pytest.mark.parametrize("given", [Alone(), Dummy, None])

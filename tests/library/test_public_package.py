@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -66,19 +67,19 @@ def test_a_comparison_has_a_process_a_run_and_costs_a_row_where_one_dies(tmp_pat
 
 
 def test_wrong_input_is_told_as_by_the_command(tmp_path: Path):
-    with pytest.raises(drystone.InputError, match="no method is called"):
+    with pytest.raises(drystone.InputError, match=r"no method is called"):
         drystone.analyse(WALL, "al")
-    with pytest.raises(drystone.InputError, match="settings"):
+    with pytest.raises(drystone.InputError, match=r"settings"):
         drystone.analyse(WALL, "la-associated", no_such_setting=1)
-    with pytest.raises(drystone.InputError, match="two walls are called"):
+    with pytest.raises(drystone.InputError, match=r"two walls are called"):
         drystone.compare([WALL, WALL], ["la-associated"])
-    with pytest.raises(drystone.InputError, match="no kind of wall"):
+    with pytest.raises(drystone.InputError, match=r"no kind of wall"):
         drystone.new_wall("stak")
     path = tmp_path / "wall.json"
     WALL.save(path)
     assert drystone.read_wall(path).document() == WALL.document()
     path.write_text(json.dumps(WALL.document() | {"frction": 1}), encoding="utf-8")
-    with pytest.raises(drystone.InputError, match="frction"):
+    with pytest.raises(drystone.InputError, match=r"frction"):
         drystone.read_wall(path)
 
 
@@ -138,11 +139,11 @@ def test_a_sweep_gives_rows_in_order_tables_and_a_page_and_finds_runs_again(tmp_
 def test_a_sweep_takes_a_shipped_study_with_changes_and_refuses_what_varies_nothing():
     done = drystone.sweep("friction", methods=["la-associated"])
     assert set(done.to_pandas()["method"]) == {"la-associated"}
-    with pytest.raises(drystone.InputError, match="nothing of"):
+    with pytest.raises(drystone.InputError, match=r"nothing of"):
         drystone.sweep(WALL)
     with pytest.raises(drystone.InputError, match='no study is called "frictoin"'):
         drystone.sweep("frictoin")
-    with pytest.raises(drystone.InputError, match="defines what varies"):
+    with pytest.raises(drystone.InputError, match=r"defines what varies"):
         drystone.sweep("friction", {"friction": [0.5]})
 
 
@@ -153,3 +154,35 @@ def test_a_check_holds_methods_to_gated_references():
     assert set(table["case"]) == {"slide", "topple"}
     assert set(table["verdict"]) == {"agrees"}
     assert "references are met" in checked._repr_html_()
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        drystone.analyse,
+        drystone.compare,
+        lambda path: drystone.compare([path]),
+        drystone.check,
+        drystone.factor,
+        drystone.domain,
+        drystone.capacity,
+        lambda path: drystone.shake(path, "0.1:0.1"),
+        lambda path: drystone.least_shaking(path, "0.1:0.1"),
+        lambda path: drystone.judge(path, drystone.analyse(drystone.new_wall("stack"), "la-associated")),
+    ],
+)
+def test_a_path_in_place_of_a_wall_is_told_how_it_becomes_one(ask: Callable[[str], object]):
+    """It ended in an AttributeError of a str, deep inside."""
+    with pytest.raises(
+        drystone.InputError, match=r"'garden.json' is no wall. Give drystone.read_wall\('garden.json'\)"
+    ):
+        ask("garden.json")
+
+
+def test_a_path_in_place_of_data_and_an_unknown_number_of_a_kind_are_told():
+    with pytest.raises(
+        drystone.InputError, match=r"'garden.json' is no wall. Give the data of a wall; drystone.read_wall reads"
+    ):
+        drystone.build_wall("garden.json")
+    with pytest.raises(drystone.InputError, match=r'arch: it has no number "fricton". Did you mean "friction"'):
+        drystone.new_wall("arch", fricton=0.6)
