@@ -157,10 +157,11 @@ ASKED_OF_OTHERS = {
     "harness/model/foreign/description.py: Settings",
     "harness/model/json_text.py: os",
     "harness/model/writing.py: error",
+    "harness/model/method_registry.py: found",
     "harness/formats/dxf.py: holder",
     "harness/formats/dxf.py: entity",
 }
-"""Objects of the standard library, pydantic and ezdxf that may lack an attribute, as flags of other systems."""
+"""Objects of the standard library, pydantic, ezdxf and other packages that may lack an attribute."""
 
 
 def test_what_an_object_may_do_is_declared_and_not_asked_by_getattr():

@@ -80,7 +80,8 @@ def check(
             }
         )
     else:
-        terminal.print_check(lines)
+        unchecked = sum(not reference.gate for case in chosen for reference in case.file.references)
+        terminal.print_check(lines, unchecked)
     sys.exit(0 if checked.passed else 1)
 
 

@@ -308,8 +308,8 @@ def print_judgement(judgement: Judgement) -> None:
     print(judgement.outcome.replace("_", " "))
 
 
-def print_check(lines: list[dict[str, Any]]) -> None:
-    """One line a reference, and a count."""
+def print_check(lines: list[dict[str, Any]], unchecked: int) -> None:
+    """One line a reference, and a count, also of the references that are not checked."""
     for line in lines:
         mark = VERDICT_TEXTS[Verdict(line["verdict"])]
         where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
@@ -319,6 +319,9 @@ def print_check(lines: list[dict[str, Any]]) -> None:
     tested = len(lines) - count["not_tested"]
     left = f"; {count['not_tested']} not tested, because a package is missing" if count["not_tested"] else ""
     print(f"{count['agrees']} of {tested} checked references are met{left}.")
+    if unchecked:
+        where = "`drystone compare` compares with them"
+        print(f"References without gate = true, which are not checked: {unchecked:,}. {where}.")
 
 
 def print_changes(rows: list[dict[str, Any]]) -> None:

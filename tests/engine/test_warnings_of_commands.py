@@ -75,3 +75,20 @@ def test_a_question_of_the_dead_load_says_that_the_live_load_rests(
 
 def test_a_share_of_the_live_load_acts(tmp_path: Path):
     assert "does not act" not in command("factor", wall(tmp_path, loads=PUSH), "--share", "0.1").stderr
+
+
+def test_check_says_that_references_are_not_checked(tmp_path: Path):
+    """A published value without a gate read "0 of 0 checked references are met", as if it had been held against it."""
+    folder = tmp_path / "cases" / "mine"
+    folder.mkdir(parents=True)
+    wall(folder, unit_weight=20, loads=PUSH)
+    about = 'source = "a paper"\nsummary = "A block."\ntitle = "A block"\n'
+    value = 'value = 0.2\ntolerance = 0.01\napplies_to = ["la-associated"]\nrequirement = "It topples."\n'
+    case = f'id = "mine"\nkind = "multiplier"\nwall = "wall.json"\n{about}'
+    reference = f'[[references]]\nid = "paper"\ntype = "published"\nsource = "a paper"\n{value}'
+    (folder / "case.toml").write_text(f'{case}{reference}tolerance_reason = "two digits"\n', encoding="utf-8")
+    done = command("check", "mine", "--cases", tmp_path / "cases", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (
+        "References without gate = true, which are not checked: 1. `drystone compare` compares with them" in done.stdout
+    )
