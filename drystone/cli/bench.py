@@ -121,7 +121,7 @@ def bench_(
     say(f'Set "{name}", version {chosen.version}: {chosen.title}. Every share is of all its walls.')
     say(made.summary().to_string(index=False, float_format="{:.4g}".format, na_rep="-"))
     for (method, status), results in sorted(unanswered.items()):
-        first = results[0]
+        first = min(results, key=lambda result: result.case)  # not the one that happened to end first
         say(f"{method}: {status} {len(results)} times, on {first.case}: {first.sentence}")
 
 
