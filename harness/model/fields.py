@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticKnownError
 
 LARGEST = 1e15
 """Greatest size of any number of the format, whatever its unit, so that no product of a few of them overflows."""
@@ -27,11 +28,22 @@ def _can_divide(value: float) -> float:
     return value
 
 
+def _not_text(value: object) -> object:
+    """What is given for a whole number, unless it is text, or true or false."""
+    if isinstance(value, str | bool):
+        raise PydanticKnownError("int_type")
+    return value
+
+
 Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True), AfterValidator(_can_divide)]
 NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
 Coefficient = Annotated[float, Field(ge=0.0, le=1e4, strict=True)]
 Angle = Annotated[float, Field(ge=0.0, lt=90.0, strict=True)]
-Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS)]
+NO_TEXT = BeforeValidator(_not_text)
+"""Of a whole number, which may be written with a decimal point as programs do, but not in quotes."""
+Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS), NO_TEXT]
+Flag = Annotated[bool, Field(strict=True)]
+"""true or false; neither "yes" nor 1."""
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Blocks = Annotated[list[Name], Field(min_length=1)]
 """Ids of the blocks that a load or a settlement is about: of none it would do nothing."""

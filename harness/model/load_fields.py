@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
-from harness.model.fields import MANY, OTHER, Blocks, Name, Number, Point, Strict
+from harness.model.fields import MANY, NO_TEXT, OTHER, Blocks, Name, Number, Point, Strict
 from harness.model.pressure_fields import Fill, Pressure
 
 
@@ -100,7 +100,7 @@ class Travelling(Strict):
     )
     blocks: Blocks | None = Field(None, description="on these alone; on all free blocks if absent")
     group: Name | None = Field(None, description="on the blocks of this group alone")
-    per_face: Annotated[int, Field(ge=1, le=100, strict=True)] = Field(
+    per_face: Annotated[int, Field(ge=1, le=100), NO_TEXT] = Field(
         1, description="places on each face, in the middle of equal parts"
     )
 

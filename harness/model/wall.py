@@ -21,6 +21,7 @@ from harness.model.fields import (
     Angle,
     Blocks,
     Coefficient,
+    Flag,
     Name,
     NonNegative,
     Number,
@@ -113,7 +114,7 @@ class Block(Strict):
     unit_weight: NonNegative | None = Field(None, description="[force/length^3]; else the wall's")
     thickness: Positive | None = Field(None, description="out of plane [length]; else the wall's")
     material: str = "stone"
-    fixed: bool = Field(False, description="a support")
+    fixed: Flag = Field(False, description="a support")
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
 
     @model_validator(mode="after")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
-from pydantic import BaseModel
+from pydantic import BaseModel, ValidationError
 
 from harness.engine.sweep.study import Study
 from harness.formats.importing import Mapping
@@ -201,3 +202,39 @@ def test_holes_of_too_many_vertices_are_refused_before_they_are_cut():
     block = {"id": "a", "polygon": corners, "holes": holes}
     with pytest.raises(InputError, match="too many to be cut"):
         parse_wall({"format": "wall/1", "friction": 0.5, "blocks": [block]}, "wall.json")
+
+
+@pytest.mark.parametrize("model", [Wall, CaseFile, Study])
+def test_no_field_takes_text_for_true_or_for_a_whole_number(model: type[BaseModel]):
+    """A block with "fixed": "yes" was a support: pydantic takes several words and numbers for true."""
+    seen: set[type[BaseModel]] = set()
+    waiting, loose = [model], []
+    while waiting:
+        part = waiting.pop()
+        if part in seen:
+            continue
+        seen.add(part)
+        part.model_rebuild()
+        for name, field in part.model_fields.items():
+            kinds = set(all_types(field.annotation))
+            waiting += [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
+            for kind, text in ((bool, "yes"), (int, "6")):
+                if field.annotation is kind and accepts(part, name, text):
+                    loose.append(f"{part.__name__}.{name}")
+    assert not loose
+
+
+def all_types(annotation: Any) -> Iterator[Any]:
+    """The types within an annotation."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from all_types(part)
+
+
+def accepts(model: type[BaseModel], name: str, text: str) -> bool:
+    """Whether a field of a model takes a text, whatever else is missing."""
+    try:
+        model.model_validate({name: text})
+    except ValidationError as error:
+        return not any(fault["loc"] and fault["loc"][0] == name for fault in error.errors())
+    return True

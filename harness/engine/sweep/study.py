@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.engine.run import LONGEST, MOST_MEMORY
-from harness.model.fields import Strict
+from harness.model.fields import NO_TEXT, Flag, Strict
 from harness.model.json_text import read_toml
 from harness.model.reading import validate
 
@@ -25,8 +25,8 @@ class Range(Strict):
 
     start: float = Field(alias="from")
     stop: float = Field(alias="to")
-    count: Annotated[int, Field(ge=1, le=MOST_RUNS)]
-    log: bool = False
+    count: Annotated[int, Field(ge=1, le=MOST_RUNS), NO_TEXT]
+    log: Flag = False
 
     @model_validator(mode="after")
     def _positive_logs(self) -> Range:
@@ -43,7 +43,7 @@ class Range(Strict):
 class Whole(Strict):
     """Whole numbers from zero: seeds."""
 
-    seeds: Annotated[int, Field(ge=1, le=MOST_RUNS)]
+    seeds: Annotated[int, Field(ge=1, le=MOST_RUNS), NO_TEXT]
 
     def values(self) -> list[int]:
         """0, 1, 2, ..."""
@@ -96,7 +96,7 @@ class StudyLimits(Strict):
     """What one run may use."""
 
     seconds: Annotated[float, Field(gt=0.0, le=LONGEST)] = 120.0
-    memory: Annotated[int, Field(ge=16, le=MOST_MEMORY, description="[MiB]")] = 4096
+    memory: Annotated[int, Field(ge=16, le=MOST_MEMORY, description="[MiB]"), NO_TEXT] = 4096
 
 
 class Curve(Strict):
@@ -105,7 +105,7 @@ class Curve(Strict):
     across: Annotated[str, Field(min_length=1, description="quantity on the axis; means are over all others")]
     apart: str = Field("", description="quantity each of whose values has a line of its own; methods otherwise")
     labels: dict[str, str] = Field(default_factory=dict, description="names of these lines, by value")
-    relative: bool = Field(False, description="percent of change from the first value, instead of multipliers")
+    relative: Flag = Field(False, description="percent of change from the first value, instead of multipliers")
     level: float | None = Field(None, description="located on each line")
     x_label: str = ""
     read: str = Field("", description="how to read it")
@@ -127,10 +127,10 @@ class Study(Strict):
     vary: dict[str, Axis] = Field(default_factory=dict, description="a grid: every value with every other")
     together: list[dict[str, Axis]] = Field(default_factory=list, description="axes of equal length that vary as one")
     draw: dict[str, Distribution] = Field(default_factory=dict, description="drawn at random, `samples` times")
-    samples: Annotated[int, Field(ge=1, le=MOST_RUNS)] = 100
-    seed: Annotated[int, Field(ge=0, description="of the draws")] = 0
+    samples: Annotated[int, Field(ge=1, le=MOST_RUNS), NO_TEXT] = 100
+    seed: Annotated[int, Field(ge=0, description="of the draws"), NO_TEXT] = 0
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict, description="of methods, if not the defaults")
-    neighbours: bool = Field(
+    neighbours: Flag = Field(
         False, description="runs use the mechanisms found on walls with the same joints, if the method supports it"
     )
     limits: StudyLimits = Field(default_factory=StudyLimits)
