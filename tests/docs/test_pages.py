@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import drystone
+
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
     path
@@ -34,3 +36,11 @@ def test_the_python_of_a_page_runs(page: Path, tmp_path: Path, monkeypatch: pyte
     scope: dict[str, object] = {}
     for snippet in re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
         exec(compile(snippet, str(page), "exec"), scope)
+
+
+def test_page_of_the_package_has_all_its_functions_and_their_results():
+    page = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    listed = {name for line in re.findall(r":members:(.*)", page) for name in line.replace(",", " ").split()}
+    made = {name: getattr(drystone, name) for name in drystone.__all__}
+    own = {name for name, thing in made.items() if getattr(thing, "__module__", "").startswith("drystone.")}
+    assert sorted(own - listed) == []
