@@ -26,6 +26,8 @@ from harness.model.details import AnswerDetails
 from harness.model.result import Result, normalised_mechanism, relative_velocities
 from harness.model.table import TableColumn
 
+_ROUNDING = 1e-12
+"""Share of the length of a joint below which an eccentricity is none: doubles leave 1e-16 of both normal forces."""
 CLOSED, UNLOADED, AT_LIMIT, SLIPS, OPENS = "closed", "unloaded", "at its limit", "slips", "opens"
 
 
@@ -78,6 +80,7 @@ def joint_margins(
     strength, slacks = assembly.law.strength(forces), assembly.law.slacks(forces)[:, :2]
     small = negligible * assembly.force_scale
     eccentricity = 0.5 * assembly.length * _share(forces[:, 1] - forces[:, 0], normal, small)
+    eccentricity[abs(eccentricity) <= _ROUNDING * assembly.length] = 0.0
     length = np.linalg.norm(assembly.face2 - assembly.face1, axis=1)
     pressed, uneven = slacks.sum(axis=1), abs(slacks[:, 0] - slacks[:, 1])
     tension = 2.0 * assembly.law.constant[:, 0]

@@ -86,8 +86,8 @@ def support_reactions(
         centroid = assembly.centroid[block]
         points = [ends[chosen].reshape(-1, 2), bars.end1[starts], bars.end2[stops]]
         arms = np.concatenate(points) - centroid
-        fx, fy = (float(part) for part in vectors.sum(axis=0))
-        moment = float((arms[..., 0] * vectors[..., 1] - arms[..., 1] * vectors[..., 0]).sum())
+        fx, fy = (_sum_of(part) for part in vectors.T)
+        moment = _sum_of(np.concatenate([arms[:, 0] * vectors[:, 1], -arms[:, 1] * vectors[:, 0]]))
         x = y = None
         if abs(fy) > flat * float(np.hypot(fx, fy)):
             level = float(arms[..., 1].max())
@@ -95,6 +95,12 @@ def support_reactions(
         listed.append(SupportReaction(assembly.block_ids[block], fx, fy, moment, x, y))
     pushed = [(bars.names[k], *(-pull[k]).tolist()) for k in np.flatnonzero(of_fill & np.any(pull, axis=1))]
     return listed + [SupportReaction(name, fx, fy, 0.0, None, None) for name, fx, fy in pushed]
+
+
+def _sum_of(terms: FloatArray, rounding: float = 1e-12) -> float:
+    """The sum of terms, zero where no more than their rounding is left: doubles leave 1e-16 of each."""
+    total = float(terms.sum())
+    return total if abs(total) > rounding * float(abs(terms).sum()) else 0.0
 
 
 def reactions_of(case: Case, result: Result) -> list[SupportReaction]:
