@@ -16,7 +16,7 @@ from methods.la.least import least_known
 from methods.la.methods import LA
 from methods.la.sources import from_motions
 from methods.la.sources.search import Choices
-from methods.numerics.pressed_search import StripTolerances, by_strips
+from methods.numerics.pressed_search import StripTolerances, by_strips, or_state_of_greatest
 from methods.numerics.stress_blocks import greatest_by_chords
 from methods.springs.warm_up import load_kernels
 
@@ -51,7 +51,8 @@ class LimitAnalysis(LimitAnalysisFamily):
         if isinstance(early, Answer):
             return early
         unproved = settings.model_copy(update={"bound_seconds": 0.0})
-        return by_strips(assembly, lambda wall: self._of_component(wall, unproved, answer), self._strips)
+        found = by_strips(assembly, lambda wall: self._of_component(wall, unproved, answer), self._strips)
+        return or_state_of_greatest(assembly, found)
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.

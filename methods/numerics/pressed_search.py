@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.claims import growing_forces, no_answer
-from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
+from methods.numerics.pressed_state import PressedState, exact_state, moving_rows, rows_at_limits
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 from methods.numerics.stress_blocks import greatest_by_chords
 
@@ -59,6 +59,30 @@ def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = Strip
         return replace(answer, details=answer.details | {"stopped_by_limit": True})
 
     return best_so_far(lambda: _to_its_end(assembly, solve, options, found), known)
+
+
+def or_state_of_greatest(assembly: Assembly, answer: Answer) -> Answer:
+    """The answer of a run that came to none, with the state of the greatest multiplier of statics if that is one.
+
+    Its mechanism is one of any flow where nothing slips in it, as under a load that crushes what is below: then walls
+    whose joints are set in bear it without end.
+    """
+    if answer.status is not Status.NOT_CONVERGED:
+        return answer
+    greatest = greatest_by_chords(assembly, assembly.dead, assembly.live)
+    if greatest.outcome != "optimal" or greatest.forces is None or greatest.mechanism is None:
+        return answer
+    limits = rows_at_limits(assembly, greatest.forces, greatest.mechanism)
+    state = exact_state(assembly, greatest.forces, limits)
+    if state is None or not state.multiplier > 0.0:
+        return answer
+    return replace(
+        _at(answer, state),
+        status=Status.OK,
+        finding=Finding.COLLAPSES,
+        sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, the greatest multiplier of "
+        "statics, with joints that crush: its mechanism slips nowhere where it would lift more than the joints do.",
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,17 +171,23 @@ def _falling_mechanism(assembly: Assembly) -> FloatArray | None:
 
 def _with_state(found: _StateOfStrips, rounds: int) -> Answer:
     """The answer with an exact state of the stress blocks in place of that of a wall that is set in."""
-    answer, state = found.answer, found.state
-    details = {name: value for name, value in answer.details.items() if name not in _OF_OTHER_JOINTS}
+    sentence = (
+        f"The wall collapses at {found.state.multiplier:.7g} times the live load, with joints that crush: a state of "
+        f"their stress blocks, found in round {rounds} of setting joints in to the middle of what they press."
+    )
+    answer = _at(found.answer, found.state)
+    return replace(answer, sentence=sentence, details=answer.details | {"set_in_walls": rounds})
+
+
+def _at(answer: Answer, state: PressedState) -> Answer:
+    """An answer with a state of the stress blocks in place of its own, and without what is true of that alone."""
     return replace(
         answer,
-        sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state "
-        f"of their stress blocks, found in round {rounds} of setting joints in to the middle of what they press.",
         multiplier=state.multiplier,
         forces=state.forces,
         forces_multiplier=state.multiplier,
         mechanism=state.mechanism,
-        details=details | {"set_in_walls": rounds},
+        details={name: value for name, value in answer.details.items() if name not in _OF_OTHER_JOINTS},
     )
 
 

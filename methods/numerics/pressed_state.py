@@ -28,14 +28,19 @@ class StateTolerances:
     """When the forces of a state are exact.
 
     Attributes:
-        moving: rate of a joint, beside the fastest, above which it moves; mechanisms of methods are good to 1e-8.
+        moving: rate of a joint, beside the fastest, above which it moves; mechanisms of methods are good to 1e-8. Also
+            the slack beside the greatest force up to which a limit is reached, where those of chords are good to 1e-10.
         settled: change of a pressed share at which the tangents are those at the forces: the error is its square.
         rounds: of tangents, at most. Each squares the change.
+        violation: of a limit, relative to the terms beside it, that forces may have: half of what the judge
+            tolerates. Where more limits meet in one point than the mechanism has joints, as in a symmetric arch,
+            vertices keep them to 1e-10 only.
     """
 
     moving: float = 1e-7
     settled: float = 1e-8
     rounds: int = 12
+    violation: float = 5e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +59,17 @@ def moving_rows(wall: Assembly, mechanism: FloatArray, options: StateTolerances 
     return np.asarray(rates > options.moving * abs(strains).max())
 
 
+def rows_at_limits(
+    assembly: Assembly, forces: FloatArray, mechanism: FloatArray, options: StateTolerances = StateTolerances()
+) -> BoolArray:
+    """(m, 4) limits of the stress blocks that forces (m, 3) reach, of the joints that a mechanism (n, 3) moves."""
+    rows, constant, _ = _tangents(assembly, pressed_shares(assembly, forces))
+    slack = np.einsum("pki,pi->pk", rows, forces) + constant
+    rates = abs(assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3).max(axis=1)
+    moves = rates > options.moving * rates.max(initial=0.0)
+    return np.asarray((slack <= options.moving * abs(forces).max(initial=0.0)) & moves[:, None])
+
+
 def exact_state(
     assembly: Assembly, forces: FloatArray, moving: BoolArray, options: StateTolerances = StateTolerances()
 ) -> PressedState | None:
@@ -61,7 +77,7 @@ def exact_state(
     known = forces
     for _ in range(options.rounds):
         share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, moving, forces)
+        found = _nearest_forces(assembly, share, moving, forces, options)
         if found is None:
             return None
         known, multiplier = found
@@ -92,7 +108,7 @@ def held_forces(
     known, rests = forces, np.zeros((assembly.n_interfaces, 4), dtype=bool)
     for _ in range(options.rounds):
         share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, rests, forces, multiplier)
+        found = _nearest_forces(assembly, share, rests, forces, options, multiplier)
         if found is None:
             return None
         known = found[0]
@@ -102,7 +118,12 @@ def held_forces(
 
 
 def _nearest_forces(
-    assembly: Assembly, share: FloatArray, moving: BoolArray, near: FloatArray, multiplier: float | None = None
+    assembly: Assembly,
+    share: FloatArray,
+    moving: BoolArray,
+    near: FloatArray,
+    options: StateTolerances,
+    multiplier: float | None = None,
 ) -> tuple[FloatArray, float] | None:
     """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given."""
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
@@ -134,7 +155,7 @@ def _nearest_forces(
     )
     status, _, _ = programme.run()
     vertex = programme.vertex() if status == "optimal" else None
-    if vertex is None or not vertex.feasible:
+    if vertex is None or not vertex.primal <= options.violation:
         return None
     return vertex.value[: 3 * m].reshape(-1, 3) * unit, float(vertex.value[3 * m]) * assembly.load_unit
 
