@@ -6,7 +6,7 @@ import json
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +16,7 @@ from drystone.walls import Wall
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.run import Limits
 from harness.engine.store import Store, open_store
-from harness.engine.sweep.expand import SweepRun, WallSource, expand, sources_of
+from harness.engine.sweep.expand import SweepRun, WallSource, expand, sources_of, warnings_of
 from harness.engine.sweep.neighbours import handed_on
 from harness.engine.sweep.quick import varied
 from harness.engine.sweep.running import Row
@@ -43,10 +43,12 @@ class Sweep:
     Attributes:
         study: what was asked.
         rows: one a run, in the order of the study, whatever order they ended in.
+        warnings: sentences about what is doubtful in the walls as they are described, each with the name of the wall.
     """
 
     study: Study
     rows: list[Row]
+    warnings: Mapping[str, str] = field(default_factory=dict)
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a run: case, method, what varied, and the answer; `attrs["units"]` names the units."""
@@ -103,7 +105,8 @@ class Sweep:
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
         marks = {name: mark_named(name, load_method(name).traits) for name in study.methods}
-        write_page(StudyPage(*about, summary.tables, summary.remarks, list(data), marks), target)
+        remarks = [*summary.remarks, *(f"{name}: {sentence}" for sentence, name in self.warnings.items())]
+        write_page(StudyPage(*about, summary.tables, remarks, list(data), marks), target)
         return target
 
     def _repr_html_(self) -> str:
@@ -163,7 +166,8 @@ def sweep(
     with _opened(store) as opened:
         where = executor or LocalExecutor(jobs)
         counting = nullcontext(progress or _silent)
-        return Sweep(study, rows_of(study, runs, opened, where, fresh=fresh, counting=lambda _: counting))
+        rows = rows_of(study, runs, opened, where, fresh=fresh, counting=lambda _: counting)
+    return Sweep(study, rows, warnings_of(sources))
 
 
 def rows_of(
@@ -240,7 +244,7 @@ def _asked(
         if not vary:
             raise InputError(f'nothing of "{what.name}" varies', 'Give vary={"friction": [0.4, 0.6]}', "vary")
         study = varied(what.name, dict(vary), methods, dict(settings or {}), limits, list(multipliers))
-        return study, [WallSource(what.name, json.loads(wall_json(what.case.wall)))]
+        return study, [WallSource(what.name, json.loads(wall_json(what.case.wall)), what.case.notes)]
     if vary:
         raise InputError("a study defines what varies", "Leave vary out, or give a wall", "vary")
     study, place = (what, None) if isinstance(what, Study) else _read(what)

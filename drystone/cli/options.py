@@ -9,7 +9,7 @@ import math
 import os
 import sys
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -283,6 +283,11 @@ def warn(*cases: Analysed, also: str = "") -> dict[str, list[str]]:
     for case in cases:
         for sentence in filter(None, (*case.warnings, also)):
             told.setdefault(sentence, case.id)
+    return tell(told)
+
+
+def tell(told: Mapping[str, str]) -> dict[str, list[str]]:
+    """Tell sentences, each with the name of its wall, as `warn` does."""
     for sentence, name in told.items():
         say(f"drystone: {name}: {sentence}", err=True)
     return {"warnings": list(told)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections import Counter
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from drystone.cli.options import (
     say,
     seconds_option,
     store_option,
+    tell,
 )
 from drystone.cli.settings import method_settings
 from drystone.cli.studies import duration, progress_bar
@@ -32,7 +34,7 @@ from drystone.studies import Sweep, changed, rows_of, shipped_studies, shipped_s
 from harness.engine.executors import Executor, LocalExecutor
 from harness.engine.run import Limits
 from harness.engine.store import open_store
-from harness.engine.sweep.expand import SweepRun, expand, sources_of
+from harness.engine.sweep.expand import SweepRun, expand, sources_of, warnings_of
 from harness.engine.sweep.quick import quick_study
 from harness.engine.sweep.study import Study, read_study
 from harness.model.errors import InputError
@@ -85,9 +87,11 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
     drystone sweep wall-21 --imperfection 0.02:0.12 --seeds 50
     """
     asked, place = _study(what, rest)
-    runs = expand(asked, sources_of(asked, rest["folders"], place))
+    sources = sources_of(asked, rest["folders"], place)
+    runs, warnings = expand(asked, sources), warnings_of(sources)
+    tell(warnings)
     if dry_run:
-        _tell_plan(asked, runs, store, jobs, rest["as_json"])
+        _tell_plan(asked, runs, store, jobs, warnings, as_json=rest["as_json"])
         return
     folder = rest["output"] or OUT / asked.name
     check_output(folder / "runs.csv")
@@ -97,7 +101,7 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
         executor = _executor(scheduler, jobs)
         counting = partial(progress_bar, quiet=rest["as_json"])
         rows = rows_of(asked, runs, opened, executor, fresh=fresh, counting=counting)
-    _leave(Sweep(asked, rows), folder, rest)
+    _leave(Sweep(asked, rows, warnings), folder, rest)
 
 
 def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
@@ -140,6 +144,7 @@ def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
         "runs": len(done.rows),
         "statuses": dict(statuses),
         "rejected": rejected,
+        "warnings": list(done.warnings),
         "files": [str(path) for path in files],
         "report": None if rest["no_report"] else str(page),
     }
@@ -165,7 +170,9 @@ def _print_multipliers(done: Sweep, folder: Path, most: int = 40) -> None:
         say(f"and {len(rows) - most:,} rows more in {folder}/quantiles.csv")
 
 
-def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_json: bool) -> None:
+def _tell_plan(
+    asked: Study, runs: list[SweepRun], store: Path, jobs: int, warnings: Iterable[str], *, as_json: bool
+) -> None:
     """How many runs there are, how many the store has, and what the rest may take by what like runs took."""
     stored: set[str] = set()
     costs: dict[str, list[float]] = {}
@@ -181,7 +188,7 @@ def _tell_plan(asked: Study, runs: list[SweepRun], store: Path, jobs: int, as_js
     seconds = sum(left[method] * mean.get(method, 0.0) for method in left) / jobs
     if as_json:
         print_json({"study": asked.name, "runs": len(runs), "by_method": dict(wanted), "to_run": dict(left),
-                    "estimated_seconds": None if unknown else seconds})  # fmt: skip
+                    "estimated_seconds": None if unknown else seconds, "warnings": list(warnings)})  # fmt: skip
         return
     say(f"{asked.title}: {len(runs):,} runs, {sum(left.values()):,} of them not in {store}")
     for method, count in wanted.items():

@@ -60,6 +60,28 @@ def test_domain_warns_of_both_load_cases(tmp_path: Path):
     assert "unit weight of 1000 kN/m3" in told[0]
 
 
+def test_sweep_tells_the_warnings_of_the_described_wall_once(tmp_path: Path):
+    """They were told nowhere: neither on the terminal nor in the document nor on the page."""
+    asked = ["sweep", wall(tmp_path, loads=PUSH), "--vary", "friction=0.3,0.5", "--methods", "la-associated", "--json"]
+    done = command(*asked, cwd=tmp_path)
+    (told,) = json.loads(done.stdout)["warnings"]
+    assert 'the unit weight of block "block" is 2000 kN/m3' in told
+    assert done.stderr.count(told) == 1
+    assert "the unit weight of block" in Path(tmp_path / json.loads(done.stdout)["report"]).read_text(encoding="utf-8")
+    planned = command(*asked, "--dry-run", cwd=tmp_path)
+    assert json.loads(planned.stdout)["warnings"] == [told]
+
+
+def test_a_wall_that_is_mended_by_what_varies_is_swept(tmp_path: Path):
+    path = wall(tmp_path, unit_weight=20, loads=PUSH)
+    described = json.loads(path.read_text(encoding="utf-8"))
+    described["blocks"][1]["polygon"][0] = [0, -0.1]  # within the ground
+    path.write_text(json.dumps(described), encoding="utf-8")
+    varied = "blocks[1].polygon[0]=[0,0],[0.01,0]"
+    done = command("sweep", path, "--vary", varied, "--methods", "la-associated", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["statuses"] == {"ok": 2}, done.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "more"),
     [(["factor"], {}), (["shake", "--pulse", "0.1:0.1"], {}), (["reaction"], {"settlements": DOWN})],

@@ -6,7 +6,7 @@ import itertools
 import json
 import math
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -40,10 +40,34 @@ def _shown(count: int) -> str:
 
 @dataclass(frozen=True)
 class WallSource:
-    """A wall that a study starts from."""
+    """A wall that a study starts from.
+
+    Attributes:
+        name: of its case and load case.
+        data: as it is described, format wall/1.
+        notes: what a person should hear about how it was found.
+    """
 
     name: str
     data: Mapping[str, Any]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a person should hear about the wall as it is described; of one that cannot be built its runs tell."""
+        try:
+            return (*self.notes, *build(parse_wall(dict(self.data), self.name), self.name).warnings)
+        except InputError:  # what varies may mend it
+            return self.notes
+
+
+def warnings_of(sources: Iterable[WallSource]) -> dict[str, str]:
+    """The warnings of the walls of a study as they are described, each once, with the name of the first it is of."""
+    told: dict[str, str] = {}
+    for source in sources:
+        for sentence in source.warnings:
+            told.setdefault(sentence, source.name)
+    return told
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +124,7 @@ class WallVariant:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """None: the table of a study has no place for them."""
+        """None: `warnings_of` tells those of the wall as it is described once, not for each of thousands of runs."""
         return ()
 
 
@@ -152,7 +176,7 @@ def sources_of(study: Study, folders: Sequence[Path] = (), place: Path | None = 
         return [WallSource(study.name, json.loads(wall_json(wall)))]
     words = [str(place / word) if place is not None and (place / word).exists() else word for word in study.cases]
     cases = [each for case in find_cases(words, None, folders) for each in load_cases_of(case)]
-    return [WallSource(case.id, json.loads(wall_json(case.wall))) for case in cases]
+    return [WallSource(case.id, json.loads(wall_json(case.wall)), case.notes) for case in cases]
 
 
 def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
