@@ -6,7 +6,7 @@ import shutil
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -31,6 +31,8 @@ from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import in_units, values
 
+_MOST_WALLS = 3
+"""Walls of which one sentence is said that are named one by one."""
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
 
@@ -90,24 +92,19 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
-    refusals = [f"{case.case.id}: {sentence}" for case in compared.cases for sentence in case.refusals]
-    for sentence in (*_proofs(compared), *refusals):
+    refusals = _by_sentence((f": {sentence}", case) for case in compared.cases for sentence in case.refusals)
+    units = _walls_of((case.case.wall.units_sentence, case) for case in compared.cases)
+    told = [f"Units: {sentence}" + (f" ({names})" if len(units) > 1 else "") for sentence, names in units.items()]
+    unanswered = _by_sentence(
+        (f", {result.method}: {result.sentence}", case)
+        for case in compared.cases
+        for result in case.results
+        if result.status is not Status.OK
+    )
+    split = _by_sentence((f": {case.split_on_dead_load}.", case) for case in compared.cases if case.split_on_dead_load)
+    strength = [sentence for case in compared.cases for sentence in _strength(case)]
+    for sentence in (*_proofs(compared), *refusals, *told, *unanswered, *split, *strength):
         console.print(escape(sentence), highlight=False)
-    units: dict[str, list[str]] = {}
-    for case in compared.cases:
-        units.setdefault(case.case.wall.units_sentence, []).append(case.case.id)
-    for sentence, names in units.items():
-        whose = f" ({first_few(names, 3)})" if len(units) > 1 else ""
-        console.print(escape(f"Units: {sentence}{whose}"), highlight=False)
-    for case in compared.cases:
-        for result in case.results:
-            if result.status is not Status.OK:
-                console.print(escape(f"{case.case.id}, {result.method}: {result.sentence}"), highlight=False)
-        if case.split_on_dead_load:
-            console.print(f"{escape(f'{case.case.id}: {case.split_on_dead_load}')}.", highlight=False)
-    for case in compared.cases:
-        for sentence in _strength(case):
-            console.print(escape(sentence), highlight=False)
     _print_envelopes(envelopes(compared.cases))
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
@@ -122,6 +119,19 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
         console.print(_all_well(gated, gates))
     if report is not None:
         print(visible(f"Report: {report}"))
+
+
+def _walls_of(said: Iterable[tuple[str, CaseResults]]) -> dict[str, str]:
+    """What is said of walls, each sentence once with the names of the first few walls that it is of."""
+    walls: dict[str, list[str]] = {}
+    for sentence, case in said:
+        walls.setdefault(sentence, []).append(case.case.id)
+    return {sentence: first_few(names, _MOST_WALLS) for sentence, names in walls.items()}
+
+
+def _by_sentence(said: Iterable[tuple[str, CaseResults]]) -> list[str]:
+    """Sentences that begin with the walls that they are of: a refusal is the same in every load case of a wall."""
+    return [f"{names}{sentence}" for sentence, names in _walls_of(said).items()]
 
 
 def _print_envelopes(found: Sequence[Envelope]) -> None:

@@ -15,12 +15,15 @@ from typing import Any
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
 from harness.model.details import AnswerDetails
+from harness.model.errors import first_few
 from harness.model.method import Status
 from harness.model.result import Result, bears_less_with_strength, plastic_and_residual_of, size_of
 from harness.model.result_texts import answer_text
 
 EQUAL = 1e-9
 """Relative difference of two multipliers that is rounding: the judge's own tolerance."""
+_MOST_NAMED = 6
+"""Load cases that a sentence names one by one; `governing` has all."""
 
 
 def safe_size(result: Result, *, residual: bool) -> float | None:
@@ -90,12 +93,13 @@ class Envelope:
         missing = [f'"{name}"' for name, size in zip(self.names, self._sizes, strict=True) if size is None]
         if missing:
             kind = "accepted residual answer" if self.by_residual else "accepted answer"
-            verdict = f"which load case governs is not known, because there is no {kind} to {' and '.join(missing)}"
+            to = first_few(missing, _MOST_NAMED)
+            verdict = f"which load case governs is not known, because there is no {kind} to {to}"
         elif not self.governing:
             verdict = "no load case makes the wall collapse"
         else:
             lowest = ranked_text(self.results[self.names.index(self.governing[0])])
-            named = " and ".join(f'"{name}"' for name in self.governing)
+            named = first_few([f'"{name}"' for name in self.governing], _MOST_NAMED)
             alike = len(self.governing) > 1
             verdict = f"load case{'s' * alike} {named} govern{'s' * (not alike)}, {lowest}"
         return f"{self.method}: {verdict}."

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import drystone
 from drystone.cli.terminal import print_comparison
 from harness.model.columns import PRINTED
-from harness.model.comparison import ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
 from harness.model.result_texts import references_text
@@ -29,6 +30,19 @@ def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_va
         comparisons=[held(0.52, 0.525), held([0.51, 0.53], [0.5, 0.6]), held(0.49, 0.495)],
     )
     assert references_text(result) == "0.525, [0.5, 0.6], 0.495 (other settings)"
+
+
+def test_one_refusal_of_many_load_cases_is_told_once(capsys):
+    """Twenty load cases and four methods gave eighty lines."""
+    stack = drystone.new_wall("stack", count=2, width=0.3, height=0.2, friction=0.8)
+    cases = [stack.called(f"stack-{k}").case for k in range(20)]
+    shared = {"method": "de", "family": "de", "status": Status.REFUSED, "finding": Finding.NONE}
+    results = [Result(case=case.id, sentence="de takes no mortar.", blocks=2, interfaces=2, **shared) for case in cases]
+    run = ComparisonRun("t", "", "", [CaseResults(case, [each]) for case, each in zip(cases, results, strict=True)])
+    print_comparison(run, None)
+    shown = capsys.readouterr().out
+    assert shown.count("takes no mortar") == 1
+    assert "stack-0, stack-1, stack-2 and 17 more, de: de takes no mortar." in shown
 
 
 def test_heads_are_those_of_the_declared_columns(capsys):

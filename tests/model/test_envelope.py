@@ -54,7 +54,19 @@ def test_the_side_to_which_a_block_leans_governs_with_its_closed_form():
 def test_equal_load_cases_govern_alike():
     cases, results = answers()
     found = envelope(cases, [results[0], results[0]])
-    assert found.verdict == 'la-associated: load cases "to the right" and "to the left" govern, 0.5352941.'
+    assert found.verdict == 'la-associated: load cases "to the right", "to the left" govern, 0.5352941.'
+
+
+def test_of_many_load_cases_the_first_few_are_named():
+    _, results = answers()
+    names = tuple(f"gust-{k}" for k in range(20))
+    found = Envelope("leaning", "la-associated", names, (results[0],) * 20)
+    assert '"gust-4", "gust-5" and 14 more govern' in found.verdict
+    assert found.governing == names
+    failed = results[0].model_copy(update={"status": Status.REFUSED})
+    unknown = replace(found, results=(failed,) * 20)
+    first = ", ".join(f'"{name}"' for name in names[:6])
+    assert unknown.verdict.endswith(f"there is no accepted answer to {first} and 14 more.")
 
 
 def test_no_load_case_governs_while_another_has_no_answer():
