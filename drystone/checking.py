@@ -46,11 +46,12 @@ class Check:
         return pd.DataFrame(self.lines).drop(columns="settings", errors="ignore")
 
     def _repr_html_(self) -> str:
+        from reports.labels.numbers import met
         from reports.notebook import html
 
         shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
-        title = f"{sum(line['verdict'] == 'agrees' for line in self.lines)} of {len(self.lines)} references are met"
-        return html(title, table=str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format)))
+        held = sum(line["verdict"] == "agrees" for line in self.lines)
+        return html(met(held, len(self.lines), "reference"), table=str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format)))
 
 
 def check(

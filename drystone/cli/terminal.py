@@ -30,6 +30,7 @@ from harness.model.result import Judgement, Result, Verdict, plastic_and_residua
 from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import in_units, values
+from reports.labels.numbers import count, met
 
 _MOST_WALLS = 3
 """Walls of which one sentence is said that are named one by one."""
@@ -110,8 +111,8 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
     gates = sum(gate.passed is not None for case in compared.cases for gate in case.gates)
     if broken:
-        known = [(gated, "checked references"), (gates, "statements of theory")]
-        held = ", ".join(f"{number} {what}" for number, what in known if number)
+        known = [(gated, "checked reference", ""), (gates, "statement", " of theory")]
+        held = ", ".join(f"{count(number, noun)}{of}" for number, noun, of in known if number)
         console.print(f"Not met, of {held}{' and ' if held else ''}the answers: {len(broken)}")
         for sentence in broken:
             console.print(f"  ✗ {escape(sentence)}", highlight=False)
@@ -181,8 +182,8 @@ def _proofs(compared: ComparisonRun) -> Iterator[str]:
 
 def _all_well(gated: int, gates: int) -> str:
     """What was compared with what, where all agrees; a wall of one's own has no references."""
-    known = f"All {gated} checked references are met" if gated else "There are no reference values"
-    theory = f"all {gates} tested statements of theory are met" if gates else "no statement of theory could be tested"
+    known = met(gated, gated, "checked reference") if gated else "There are no reference values"
+    theory = met(gates, gates, "tested statement", " of theory") if gates else "no statement of theory could be tested"
     return f"{known}; {theory}; the judge rejects no answer."
 
 
@@ -325,10 +326,10 @@ def print_check(lines: list[dict[str, Any]], unchecked: int) -> None:
         where = line["method"] + (f" {line['settings']}" if line["settings"] else "")
         line_text = f"{mark}  {line['case']}  {line['quantity']}  {where}: {line['sentence']}  [{line['source']}]"
         print(visible(line_text))
-    count = Counter(line["verdict"] for line in lines)
-    tested = len(lines) - count["not_tested"]
-    left = f"; {count['not_tested']} not tested, because a package is missing" if count["not_tested"] else ""
-    print(f"{count['agrees']} of {tested} checked references are met{left}.")
+    verdicts = Counter(line["verdict"] for line in lines)
+    untested = verdicts["not_tested"]
+    left = f"; {untested} not tested, because a package is missing" if untested else ""
+    print(f"{met(verdicts['agrees'], len(lines) - untested, 'checked reference')}{left}.")
     if unchecked:
         where = "`drystone compare` compares with them"
         print(f"References without gate = true, which are not checked: {unchecked:,}. {where}.")

@@ -125,3 +125,8 @@ def count(number: int, noun: str) -> str:
     """A count with its noun, e.g. "1 case", "3 cases"."""
     plural = noun + ("es" if noun.endswith(("s", "x")) else "s")
     return f"{number} {noun if number == 1 else plural}"
+
+
+def met(held: int, tested: int, noun: str, of: str = "") -> str:
+    """How many of what was tested are met, e.g. "2 of 3 references are met"; `of` follows the noun, as " of theory"."""
+    return f"{held} of {count(tested, noun)}{of} {'is' if 1 in (held, tested) else 'are'} met"

@@ -9,6 +9,7 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
 from harness.model.result_texts import references_text
+from reports.labels.numbers import met
 
 
 def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_value_beside_it():
@@ -30,6 +31,24 @@ def test_a_reference_that_asks_for_other_settings_is_not_shown_as_that_of_the_va
         comparisons=[held(0.52, 0.525), held([0.51, 0.53], [0.5, 0.6]), held(0.49, 0.495)],
     )
     assert references_text(result) == "0.525, [0.5, 0.6], 0.495 (other settings)"
+
+
+def test_one_of_one_is_singular(capsys):
+    """It read "All 1 checked references are met"."""
+    known = {"reference": "known", "quantity": "multiplier", "value": 0.5, "expected": 0.5, "tolerance": 0.01}
+    held = Comparison(**known, gate=True, verdict=Verdict.AGREES, sentence="It holds.")
+    case = drystone.new_wall("stack", count=2, width=0.3, height=0.2, friction=0.8).case
+    about = {"case": case.id, "method": "la", "family": "la", "blocks": 2, "interfaces": 2, "multiplier": 0.5}
+    result = Result(**about, status=Status.OK, finding=Finding.COLLAPSES, sentence="It falls.", comparisons=[held])
+    print_comparison(ComparisonRun("t", "", "", [CaseResults(case, [result])]), None)
+    assert "1 of 1 checked reference is met; no statement" in capsys.readouterr().out
+    said = [met(held, tested, "reference") for held, tested in ((3, 3), (1, 3), (0, 1), (0, 0))]
+    assert said == [
+        "3 of 3 references are met",
+        "1 of 3 references is met",
+        "0 of 1 reference is met",
+        "0 of 0 references are met",
+    ]
 
 
 def test_one_refusal_of_many_load_cases_is_told_once(capsys):
