@@ -51,7 +51,8 @@ class Check:
 
         shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
         held = sum(line["verdict"] == "agrees" for line in self.lines)
-        return html(met(held, len(self.lines), "reference"), table=str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format)))
+        table = str(shown.to_html(index=False, na_rep="-", float_format="{:.6g}".format))
+        return html(met(held, len(self.lines), "reference"), table=table)
 
 
 def check(

@@ -250,6 +250,16 @@ def _bar_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str,
         yield "", f"and {len(listed) - most} more ties and props; --json has all"
 
 
+def _of_state(result: Result) -> str:
+    """Of which multiplier the forces of a result are and, where it stands beside another answer, with which joints."""
+    joints = ""
+    if residual_of(result) is not None:
+        joints = ", with the strength of the joints"
+    elif plastic_of(result) is not None:
+        joints = ", without the strength of brittle joints"
+    return f"The forces below are those at the multiplier {result.forces_multiplier or 0.0:.7g}{joints}."
+
+
 def _reaction_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str, str]]:
     """One line a support, up to so many, for a person."""
     force, length = case.wall.units.force, case.wall.units.length
@@ -289,7 +299,8 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
         rows.append(("bracket", f"[{result.bracket[0]:.7g}, {result.bracket[1]:.7g}] {result.bracket_meaning}"))
     if proof.sentence:
         rows.append(("proof", proof.sentence))
-    rows += [*_bar_lines(case, result), *_reaction_lines(case, result)]
+    if borne := [*_bar_lines(case, result), *_reaction_lines(case, result)]:
+        rows += [("state", _of_state(result)), *borne]
     rows += [("status", str(result.status)), ("judge", result.judge.sentence)]
     rows += [("", f"{name} {value}") for name, value in result.judge.listed()]
     for comparison in result.comparisons:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
+
 import drystone
-from drystone.cli.terminal import print_comparison
+from drystone.cli.terminal import print_comparison, print_result
 from harness.model.columns import PRINTED
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
@@ -49,6 +53,29 @@ def test_one_of_one_is_singular(capsys):
         "0 of 1 reference is met",
         "0 of 0 references are met",
     ]
+
+
+@pytest.mark.parametrize(
+    ("strength", "said"),
+    [
+        ({}, "at the multiplier 0.2."),
+        ({"cohesion": 20}, "at the multiplier 0.3, with the strength of the joints."),
+        ({"cohesion": 20, "after": "residual"}, "at the multiplier 0.2, without the strength of brittle joints."),
+    ],
+)
+def test_reactions_say_of_which_of_two_multipliers_they_are(strength: dict[str, Any], said: str, capsys):
+    """With the strength of joints they stood below "rely on the residual answer", and belong to the other one."""
+    blocks = [
+        {"id": "ground", "polygon": [[-1, -0.2], [2, -0.2], [2, 0], [-1, 0]], "fixed": True},
+        {"id": "block", "polygon": [[0, 0], [0.4, 0], [0.4, 2], [0, 2]]},
+    ]
+    friction = {"default": 0.7, "tensile_strength": 20 if strength else 0} | strength
+    loads = {"loads": {"live": {"body": [{"per_weight": [1, 0]}]}}}
+    wall = drystone.build_wall({"format": "wall/1", "unit_weight": 20, "friction": friction, "blocks": blocks} | loads)
+    result = drystone.analyse(wall, "la")
+    print_result(result, wall.case, result.proof)
+    shown = " ".join(capsys.readouterr().out.split())
+    assert f"The forces below are those {said} reaction ground: Fx" in shown
 
 
 def test_one_refusal_of_many_load_cases_is_told_once(capsys):
