@@ -17,6 +17,7 @@ from drystone.cli.options import (
     catching,
     json_flag,
     known_methods,
+    load_case_option,
     print_json,
     runs_options,
     say,
@@ -25,7 +26,7 @@ from harness.engine.pipeline import Runs
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.sensitivity import Plateau, advised, over_tolerance, suggested
 from harness.model.build import build
-from harness.model.errors import InputError, raise_faults
+from harness.model.errors import InputError, in_file, raise_faults
 from harness.model.inspection import Inspection, inspect
 from harness.model.library import library
 from harness.model.load_cases import named_loads
@@ -94,23 +95,25 @@ def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...], r
     sys.exit(INPUT_ERROR if looked.faults else 0)
 
 
-def _looked_at(case: str, folders: tuple[Path, ...]) -> Inspection:
-    """A case, a wall file or a drawing looked over.
+def _looked_at(case: str, folders: tuple[Path, ...], load_case: str | None = None) -> Inspection:
+    """A case, a wall file or a drawing looked over, under one of its load cases or the first.
 
     Raises:
-        InputError: there is none, or nothing in it can be looked at.
+        InputError: there is none, or nothing in it can be looked at, or it has no such load case.
     """
     path = Path(case)
     if not path.is_file():
         (found,) = find_cases([case], None, folders)
         for note in found.notes:
             say(f"drystone: {note}", err=True)
-        return inspect(found.wall, found.id)
+        with in_file(found.origin):
+            return inspect(found.wall, found.id, load_case=load_case)
     wall, before = salvaged(read_document(path), str(path))
     if wall is None:
         raise_faults(before, str(path))
         raise AssertionError("a wall that is not read has an error")
-    return inspect(wall, path.stem, before)
+    with in_file(str(path)):
+        return inspect(wall, path.stem, before, load_case)
 
 
 def _list_marks(looked: Inspection, advice: float | None) -> None:
@@ -193,18 +196,27 @@ def _place(point: tuple[float, float] | None) -> str:
 @click.option("--window", is_flag=True, help="Draw in a window instead of to a file.")
 @click.option("--axes/--no-axes", default=True, show_default=True, help="Coordinates of the file, and a scale.")
 @click.option("--dimensions", is_flag=True, help="Sizes of the wall and of every block.")
+@load_case_option
 @cases_option
 @catching
-def show(case: str, output: Path, window: bool, axes: bool, dimensions: bool, folders: tuple[Path, ...]) -> None:
+def show(
+    case: str,
+    output: Path,
+    window: bool,
+    axes: bool,
+    dimensions: bool,
+    load_case: str | None,
+    folders: tuple[Path, ...],
+) -> None:
     """Draw CASE (an id, a WALL.json or a drawing) to a file (.svg, .pdf, .png) or in a window, before anything is run.
 
     A wall with faults is drawn too, with the faults marked under the numbers of `drystone validate`; exit code 2 then.
-    Needs drystone[figures].
+    Of several load cases the first is drawn, or that of --load-case; the drawing names it. Needs drystone[figures].
     """
     from reports.figures.figures import show_window
     from reports.figures.wall_check_figure import draw_inspected, inspected_figure
 
-    looked = _looked_at(case, folders)
+    looked = _looked_at(case, folders, load_case)
     for sentence in looked.sentences(advised(looked)):
         say(f"drystone: {sentence}", err=True)
     if window:

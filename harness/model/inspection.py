@@ -22,7 +22,7 @@ from harness.model.errors import MOST_WORDED, InputError, Spot, first_few, sorte
 from harness.model.input_checks import unknown_in_rules
 from harness.model.interfaces import Joints, faults_of_given, floating, floating_groups, joints_of, limits_of
 from harness.model.laid import lay
-from harness.model.load_cases import each_built, named_loads
+from harness.model.load_cases import each_built, named_loads, under_load_case
 from harness.model.names import faults_of_wall
 from harness.model.plausibility import NEAR_MISS, allowing, saying, span
 from harness.model.wall import Block, Detection, Interface, Wall
@@ -67,6 +67,7 @@ class Inspection:
         names, outlines (k, 2), fixed: of its blocks; an outline that is no polygon is as drawn [length].
         marks: faults first, in the order in which they are found.
         built: the wall, where nothing keeps it from being built.
+        load_case: under which it is built; empty where it has none.
     """
 
     wall: Wall
@@ -75,6 +76,7 @@ class Inspection:
     fixed: BoolArray
     marks: tuple[FaultMark, ...]
     built: Built | None
+    load_case: str = ""
 
     @property
     def faults(self) -> tuple[FaultMark, ...]:
@@ -106,14 +108,17 @@ class Inspection:
         return lines
 
 
-def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -> Inspection:
+def inspect(
+    wall: Wall, name: str = "wall", before: Sequence[InputError] = (), load_case: str | None = None
+) -> Inspection:
     """A wall looked over.
 
     Args:
         wall: as read; name: what it is called; before: faults for which parts of the file are already left out of it.
+        load_case: under which it is built; None: the first, if it has any.
 
     Raises:
-        InputError: it has no blocks, or too many.
+        InputError: it has no blocks, or too many, or it can be built and has no such load case.
     """
     blocks = written_out(wall)
     apart = _with_own_names(blocks)
@@ -128,12 +133,14 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
         found, doubts, joints = _lying(wall, kept, list(polygons.values()), _hulls(blocks, polygons))
         faults += found
     built: Built | None = None
-    warnings = [*wall.doubts]
+    drawn, warnings = "", [*wall.doubts]
     if not faults and not before:
         try:
-            built, warnings = _built(wall, name, blocks, joints)
+            drawn, built, warnings = _built(wall, name, blocks, joints, load_case)
         except InputError as error:
             faults += error.faults
+    if built is not None and load_case is not None and load_case != drawn:
+        under_load_case(wall, load_case)  # says which there are
     marks = [*(_marked(fault, "fault") for fault in (*before, *faults)), *doubts]
     # Near misses are in the list one by one, so the sentence that sums them up would be a repetition.
     if built is None:
@@ -142,25 +149,31 @@ def inspect(wall: Wall, name: str = "wall", before: Sequence[InputError] = ()) -
     middle = {block.id: np.mean(np.array(block.polygon), axis=0) for block in apart}
     names = tuple(block.id for block in apart)
     outlines = tuple(polygons.get(k, np.array(block.polygon, dtype=float)) for k, block in enumerate(blocks))
-    return Inspection(wall, names, outlines, fixed, tuple(_placed(mark, middle) for mark in _once(marks)), built)
+    placed = tuple(_placed(mark, middle) for mark in _once(marks))
+    return Inspection(wall, names, outlines, fixed, placed, built, drawn)
 
 
-def _built(wall: Wall, name: str, blocks: list[Block], joints: Joints | None) -> tuple[Built, list[str]]:
-    """The wall under the first of its load cases, or as it is if it has none, and the warnings of all of them.
+def _built(
+    wall: Wall, name: str, blocks: list[Block], joints: Joints | None, wanted: str | None
+) -> tuple[str, Built, list[str]]:
+    """The wall under the load case that is wanted or else the first, with its name, and the warnings of all of them.
+
+    A wall without load cases is built as it is, and the name is empty.
 
     Its blocks have no faults, and the joints between them are known, unless no two blocks can have one.
     """
-    known, first = named_loads(wall), None
+    known, chosen = named_loads(wall), None
     laid = lay(wall, blocks, joints)
     concerned: dict[str, list[str]] = {}
     for load_case, _, built in each_built(wall, dict.fromkeys(known, name), known, laid) if known else ():
-        first = first or built
+        if chosen is None or load_case == wanted:
+            chosen = load_case, built
         for sentence in built.warnings:
             concerned.setdefault(sentence, []).append(load_case)
-    if first is None:
+    if chosen is None:
         alone = build(wall, name, laid)
-        return alone, list(alone.warnings)
-    return first, [
+        return "", alone, list(alone.warnings)
+    return *chosen, [
         sentence if len(names) == len(known) else f"load case {first_few(names, 5)}: {sentence}"
         for sentence, names in concerned.items()
     ]

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 
 from harness.model.assembly import FloatArray
 from harness.model.inspection import FaultMark, Inspection
+from harness.model.load_cases import named_loads
 from harness.model.rings import rings_of
 from harness.model.units import DIMENSIONLESS
 from reports.drawing.display_list import Arrows, DisplayList, Frame, Polygons
@@ -27,6 +28,7 @@ from reports.figures.figures import PAGE, save, style
 from reports.figures.plot import plot
 from reports.geometry import shapes
 from reports.geometry.thrust_lines import round_number
+from reports.labels.numbers import count
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def inspected_figure(
         extent = shapes.extent_of(looked.outlines)
         margin = sheet.margin * extent.longest
         width, height = extent.width + 2 * margin, extent.height + 2 * margin
-        legend = _legend(looked.marks, sheet)
+        legend = [*_loads(looked), *_legend(looked.marks, sheet)]
         tall = PAGE * min(height / width, sheet.tallest)
         foot = (0.35 if axes else 0.0) + 1.35 * sheet.text / 72 * len(legend)
         page = Figure(figsize=(PAGE, tall + foot))
@@ -210,6 +212,13 @@ def _marks(ax: Axes, marks: Sequence[FaultMark], sheet: Sheet) -> None:
             bbox={"boxstyle": "round,pad=0.2", "facecolor": tint, "edgecolor": "none"},
             arrowprops={"arrowstyle": "-", "color": tint},
         )
+
+
+def _loads(looked: Inspection) -> list[str]:
+    """Which of several load cases is drawn, in words."""
+    if not looked.load_case:
+        return []
+    return [f'Loads: load case "{looked.load_case}", of {count(len(named_loads(looked.wall)), "load case")}']
 
 
 def _legend(marks: Sequence[FaultMark], sheet: Sheet) -> list[str]:

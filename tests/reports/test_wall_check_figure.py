@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from matplotlib.collections import PathCollection
 from cases.start import stack
 from drystone.cli.main import main
 from harness.model.inspection import inspect
+from harness.model.reading import parse_wall
 from harness.model.salvage import salvaged
 from reports.figures.wall_check_figure import inspected_figure
 from reports.geometry.thrust_lines import round_number
@@ -59,3 +61,32 @@ def test_show_draws_a_faulty_file_tells_its_faults_and_ends_with_2(tmp_path: Pat
     assert run.exit_code == 2
     assert "overlap" in run.output
     assert (tmp_path / "wall.svg").read_bytes().startswith(b"<?xml")
+
+
+def test_drawing_of_a_wall_of_several_load_cases_names_the_one_it_shows_and_another_can_be_asked_for(tmp_path: Path):
+    """It drew the loads of the first without a word."""
+    path = tmp_path / "wall.json"
+    own = {name: {"live": {"body": [{"per_weight": [way, 0]}]}} for name, way in (("right", 1), ("left", -1))}
+    path.write_text(json.dumps(stack(2, width=0.3, height=0.2).document() | {"loads": {}, "load_cases": own}))
+
+    def drawn(*arguments: str) -> str:
+        run = CliRunner().invoke(main, ["show", str(path), "-o", str(tmp_path / "wall.svg"), *arguments])
+        assert run.exit_code == 0, run.output
+        return (tmp_path / "wall.svg").read_text(encoding="utf-8")
+
+    assert 'Loads: load case "right", of 2 load cases' in html.unescape(drawn())
+    assert 'Loads: load case "left", of 2 load cases' in html.unescape(drawn("--load-case", "left"))
+    refused = CliRunner().invoke(main, ["show", str(path), "-o", str(tmp_path / "no.svg"), "--load-case", "lift"])
+    assert refused.exit_code == 2
+    assert f'{path}: load_cases: no load case is called "lift". Did you mean "left"?' in refused.output
+    assert not (tmp_path / "no.svg").exists()
+
+
+@pytest.mark.parametrize("name", ["left", "right"])
+def test_loads_that_are_drawn_are_those_of_the_load_case(name: str):
+    own = {each: {"live": {"body": [{"per_weight": [way, 0]}]}} for each, way in (("right", 1), ("left", -1))}
+    described = stack(2, width=0.3, height=0.2).document() | {"loads": {}, "load_cases": own}
+    looked = inspect(parse_wall(described, "wall.json"), load_case=name)
+    assert looked.built is not None
+    assert looked.load_case == name
+    assert looked.built.assembly.live[:, 0].sum() * own[name]["live"]["body"][0]["per_weight"][0] > 0.0
