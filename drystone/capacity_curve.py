@@ -19,7 +19,7 @@ from drystone.walls import Wall, checked_wall
 from harness.engine.pipeline import Runs
 from harness.engine.settled_judge import judge_every_state, states_in_words
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import Hints, InputError
+from harness.model.errors import Hints, InputError, in_file
 from harness.model.names import unknown_block
 from harness.model.result import Judgement
 
@@ -126,7 +126,8 @@ def capacity(
     """
     wall = checked_wall(wall)
     assembly = wall.assembly
-    _check(wall, block)
+    with in_file(wall.case.origin):
+        _check(wall, block)
     settings = {} if steps is None else steps.model_dump(mode="json")
     followed = run_followed(wall, "la-capacity", settings, partial(judge_every_state, tolerance=tolerance), runs)
     if isinstance(followed, str):
@@ -160,7 +161,8 @@ def _check(wall: Wall, block: str | None) -> None:
     if not assembly.has_live_load:
         raise InputError("the wall has no live load, so that it has no multiplier", "Give a live load", "loads.live")
     if np.any(assembly.support_motion):
-        raise InputError("the wall has settlements", "Ask `drystone reaction --until-collapse`, or leave them out")
+        remedy = "Ask `drystone reaction --until-collapse`, or leave them out"
+        raise InputError("the wall has settlements", remedy, "settlements")
     if block is not None and block not in assembly.block_ids:
         raise unknown_block(block, "--block", Hints(assembly.block_ids))
     check_simple(wall, "ask `drystone run` for the multiplier as drawn", assembly.dead, assembly.live)

@@ -23,6 +23,7 @@ from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_held, reaction_of, work_scale
 from harness.model.assembly import FloatArray
 from harness.model.bars import bar_tensions
+from harness.model.errors import in_file
 from harness.model.method import Finding, Method, Status
 from harness.model.method_registry import check_takes, load_method
 from harness.model.result import Judgement, Result
@@ -100,7 +101,8 @@ def held_reactions(wall: Wall, *, runs: Runs = Runs(), **settings: Any) -> tuple
     """
     assembly, method = wall.assembly, load_method("de")
     still = replace(assembly, live=np.zeros_like(assembly.live), support_motion=np.zeros_like(assembly.support_motion))
-    check_takes(method, still)
+    with in_file(wall.case.origin):
+        check_takes(method, still)
     ends = proved_extremes(wall, runs=runs)
     if isinstance(ends, str):
         return ends
@@ -135,7 +137,8 @@ def _bracket(
 ) -> HeldReaction | str:
     """The bracket of one sense from the reaction at rest on."""
     assembly = wall.assembly
-    guided = released(assembly, begins, not gives_way)
+    with in_file(wall.case.origin):
+        guided = released(assembly, begins, not gives_way)
     result = guided.result(wall.case, "de", settings, runs)
     state = _state(guided, result)
     if result.bracket is None or result.multiplier is None or result.forces_multiplier is None or state is None:

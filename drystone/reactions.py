@@ -15,7 +15,7 @@ from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_reaction
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.bars import bar_tensions, with_bars_as_joints
-from harness.model.errors import InputError
+from harness.model.errors import InputError, in_file
 from harness.model.followed import DrivenWall
 from harness.model.passive import FILL
 from harness.model.result import Judgement, Result, fastest_vertex
@@ -205,7 +205,8 @@ def least_known_reactions(
         return alone
     found: list[Reaction] = []
     for greatest, begins in ((False, high - inside * (high - low)), (True, low + inside * (high - low))):
-        guided = released(assembly, begins, greatest)
+        with in_file(wall.case.origin):
+            guided = released(assembly, begins, greatest)
         # The multiplier of the released wall is how far the reaction has changed since the search began.
         result = guided.result(wall.case, method, {}, runs)
         tensions = bar_tensions(guided.assembly, result)

@@ -20,7 +20,7 @@ from harness.engine.judge import judge
 from harness.engine.motion_judge import judge_time_history
 from harness.engine.pipeline import Runs
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError
+from harness.model.errors import InputError, in_file
 from harness.model.followed import ShakenWall
 from harness.model.ground_motion import GRAVITY, GroundMotion, pulses_of, read_motion
 from harness.model.method import Finding
@@ -201,7 +201,8 @@ class Shaker:
         if isinstance(motion, str):
             motion = pulses_of(motion)
         self.motion = read_motion(motion, gravity) if isinstance(motion, Path) else motion
-        _check(wall)
+        with in_file(wall.case.origin):
+            _check(wall)
         self._in_lengths = gravity * wall.case.wall.units.metre
         self._check_steps()
 

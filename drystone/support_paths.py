@@ -14,7 +14,7 @@ from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
 from harness.engine.reaction_judge import judge_plateau
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError
+from harness.model.errors import InputError, in_file
 from harness.model.followed import SupportPath
 from harness.model.method_registry import check_takes, load_method
 from harness.model.result import Judgement, Result
@@ -120,11 +120,11 @@ def reaction_paths(
         InputError: no support with a joint moves, or the wall has joints or bars that the method does not take.
     """
     assembly, method = wall.assembly, load_method(by)
-    if len(assembly.bars):
-        raise InputError(
-            "the path takes no ties, props and passive fill", "Ask for the two reactions alone, or leave them out"
-        )
-    check_takes(method, replace(assembly, support_motion=np.zeros_like(assembly.support_motion)))
+    with in_file(wall.case.origin):
+        if len(assembly.bars):
+            remedy = "Ask for the two reactions alone, or leave them out"
+            raise InputError("the path takes no ties, props and passive fill", remedy)
+        check_takes(method, replace(assembly, support_motion=np.zeros_like(assembly.support_motion)))
     ends = proved_extremes(wall, runs=runs)
     if isinstance(ends, str):
         return ends
