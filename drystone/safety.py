@@ -25,6 +25,7 @@ from harness.model.case import Case
 from harness.model.content import exact_hash_of
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
+from harness.model.input_checks import plastic_strength
 from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.reading import validate
@@ -77,16 +78,7 @@ class ReducedWall:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Those of the wall as it is described, and that strength which a factor divides is never lost."""
-        drawn = self.case.assembly
-        plastic = int((drawn.constant.any(axis=1) & ~drawn.brittle).sum())
-        if not plastic:
-            return self.case.warnings
-        return (
-            *self.case.warnings,
-            f"cohesion or tensile strength of {plastic} of {drawn.n_interfaces} joints counts as plastic: never lost, "
-            'however far a joint opens or slips. Mortar is brittle: ask with "after": "residual", or without both, '
-            "too, and rely on the least factor",
-        )
+        return (*self.case.warnings, *plastic_strength(self.case.assembly))
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,6 +27,7 @@ from drystone.cli.settings import settings_of
 from drystone.interaction import LoadPair, domain_by
 from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
+from harness.model.input_checks import plastic_strength
 
 
 @click.command()
@@ -78,7 +79,7 @@ def domain(
     check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
     loads = LoadPair.of(found, load_cases=() if load_cases is None else load_cases.split(","), live=live)
-    told = warn(*loads.cases)
+    told = warn(*loads.cases, also=plastic_strength(loads.cases[0].assembly))
     answer = domain_by(
         loads,
         method,

@@ -62,7 +62,7 @@ def factor(
     """
     check_methods([method], "--method")
     (found,) = find_cases([case], None, folders)
-    besides = "" if share else left_out_of(found, "(--share 1 adds all of it)")
+    besides = () if share else left_out_of(found, "(--share 1 adds all of it)")
     told = warn(ReducedWall(found, 1.0, share), also=besides)
     answer = factor_by(
         Wall(found),

@@ -9,7 +9,7 @@ import math
 import os
 import sys
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -269,19 +269,19 @@ def runs_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_runs
 
 
-def warn(*cases: Analysed, also: str = "") -> dict[str, list[str]]:
+def warn(*cases: Analysed, also: Iterable[str] = ()) -> dict[str, list[str]]:
     """Tell what a person should hear about walls, on standard error, each sentence once.
 
     Args:
         cases: one wall, or one under several loads.
-        also: what is to be said besides, if anything.
+        also: what is to be said besides.
 
     Returns:
         The same as `warnings` of a JSON document.
     """
     told: dict[str, str] = {}
     for case in cases:
-        for sentence in filter(None, (*case.warnings, also)):
+        for sentence in (*case.warnings, *also):
             told.setdefault(sentence, case.id)
     return tell(told)
 
@@ -293,11 +293,11 @@ def tell(told: Mapping[str, str]) -> dict[str, list[str]]:
     return {"warnings": list(told)}
 
 
-def left_out_of(case: Case, remedy: str = "") -> str:
-    """What a question about the dead load alone says where a wall has a live load, and how that acts; else nothing."""
+def left_out_of(case: Case, remedy: str = "") -> tuple[str, ...]:
+    """What a question about the dead load alone says where a wall has a live load, and how that acts."""
     if not case.assembly.has_live_load:
-        return ""
-    return f"the live load of the wall does not act: this question is of its dead load alone {remedy}".rstrip()
+        return ()
+    return (f"the live load of the wall does not act: this question is of its dead load alone {remedy}".rstrip(),)
 
 
 TABLE = ".csv"

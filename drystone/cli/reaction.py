@@ -28,6 +28,7 @@ from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError, first_few
+from harness.model.input_checks import plastic_strength
 
 Besides = dict[str, list[str]] | None
 """What a JSON document says besides its answer; None where text is printed."""
@@ -102,7 +103,7 @@ def reaction(
         raise InputError("two numbers are no curve", "Give --path or --until-collapse with it", "--output")
     check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
-    told = warn(found, also=left_out_of(found))
+    told = warn(found, also=(*left_out_of(found), *plastic_strength(found.assembly)))
     wall, besides = Wall(found), told if as_json else None
     if as_path:
         _print_paths(wall, by, runs, output, besides)

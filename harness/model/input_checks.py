@@ -119,6 +119,18 @@ def _strength_slips(wall: Wall, laws: FloatArray) -> list[str]:
     return sentences
 
 
+def plastic_strength(assembly: Assembly) -> tuple[str, ...]:
+    """The warning of questions whose answers count strength that mortar loses; none where joints have no such."""
+    plastic = int((assembly.constant.any(axis=1) & ~assembly.brittle).sum())
+    if not plastic:
+        return ()
+    return (
+        f"cohesion or tensile strength of {plastic} of {assembly.n_interfaces} joints counts as plastic: never lost, "
+        'however far a joint opens or slips. Mortar is brittle: ask with "after": "residual", or without both, too, '
+        "and rely on the less favourable answer",
+    )
+
+
 def _rule_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str]:
     """Rules of friction that no interface meets."""
     if not isinstance(wall.friction, Friction):

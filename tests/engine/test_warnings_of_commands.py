@@ -49,6 +49,16 @@ def test_warnings_stand_in_every_json_document(arguments: list[str], more: dict[
     assert told[0] in done.stderr
 
 
+@pytest.mark.parametrize(("word", "more"), [("domain", {}), ("factor", {}), ("reaction", {"settlements": DOWN})])
+def test_a_question_that_counts_strength_as_plastic_says_so(word: str, more: dict[str, Any], tmp_path: Path):
+    mortar = {"unit_weight": 20, "cohesion": 50, "tensile_strength": 20}
+    done = command(word, wall(tmp_path, **mortar, **more), "--json")
+    told = json.loads(done.stdout)["warnings"]
+    assert [sentence for sentence in told if "of 1 of 1 joints counts as plastic" in sentence] == told
+    assert len(told) == 1
+    assert told[0] in done.stderr
+
+
 def test_domain_warns_of_both_load_cases(tmp_path: Path):
     def water(unit_weight: float) -> dict[str, Any]:
         level = {"level": 2, "unit_weight": unit_weight}
