@@ -8,13 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.content import hash_of
 from harness.model.errors import InputError, in_file
-from harness.model.fields import Flag, Strict
+from harness.model.fields import Strict
 from harness.model.json_text import read_json, read_toml
 from harness.model.method_registry import method_names
 from harness.model.reading import parse_wall, read_document, validate
@@ -58,7 +58,7 @@ class Reference(Strict):
     tolerance: Annotated[float, Field(ge=0.0, description="absolute")] = 0.0
     tolerance_reason: str = Field("", description="the reason for the tolerance")
     applies_to: Annotated[list[str], Field(min_length=1, description="names of methods")]
-    gate: Flag = Field(False, description="a violation makes `drystone check` fail")
+    gate: StrictBool = Field(False, description="a violation makes `drystone check` fail")
     tier: Literal["quick", "full"] = Field("quick", description="the tier of `drystone check` that runs it")
     settings: dict[str, Any] = Field(default_factory=dict, description="method settings for the reference")
     source: Annotated[str, Field(min_length=1, description="author, year, and where in it")]

@@ -42,8 +42,6 @@ Angle = Annotated[float, Field(ge=0.0, lt=90.0, strict=True)]
 NO_TEXT = BeforeValidator(_not_text)
 """Of a whole number, which may be written with a decimal point as programs do, but not in quotes."""
 Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS), NO_TEXT]
-Flag = Annotated[bool, Field(strict=True)]
-"""true or false; neither "yes" nor 1."""
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Blocks = Annotated[list[Name], Field(min_length=1)]
 """Ids of the blocks that a load or a settlement is about: of none it would do nothing."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
-from harness.model.fields import MOST_BLOCKS, Count, Flag, Name, NonNegative, Number, Point, Positive, Strict
+from harness.model.fields import MOST_BLOCKS, Count, Name, NonNegative, Number, Point, Positive, Strict
 
 
 class PatternBase(Strict):
@@ -32,7 +32,7 @@ class RunningBond(PatternBase):
     count: Count | None = Field(None, description="number of courses, instead of `courses`")
     bricks: Count | None = Field(None, description="whole bricks in a full course, with `count`")
     start: Literal["half", "full"] = Field("half", description="bottom course begins with half a brick, or a whole one")
-    base: Flag = Field(True, description="add a fixed block under the whole width, one block high")
+    base: StrictBool = Field(True, description="add a fixed block under the whole width, one block high")
 
     @model_validator(mode="after")
     def _courses_or_count(self) -> RunningBond:

@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
+from pydantic import BaseModel, Discriminator, Field, StrictBool, Tag, model_validator
 
 from harness.model.bar_fields import Prop, Tie
 from harness.model.fields import (
@@ -21,7 +21,6 @@ from harness.model.fields import (
     Angle,
     Blocks,
     Coefficient,
-    Flag,
     Name,
     NonNegative,
     Number,
@@ -114,7 +113,7 @@ class Block(Strict):
     unit_weight: NonNegative | None = Field(None, description="[force/length^3]; else the wall's")
     thickness: Positive | None = Field(None, description="out of plane [length]; else the wall's")
     material: str = "stone"
-    fixed: Flag = Field(False, description="a support")
+    fixed: StrictBool = Field(False, description="a support")
     groups: list[Name] = Field(default_factory=list, description="groups a load may name")
 
     @model_validator(mode="after")

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
 
 from harness.engine.run import LONGEST, MOST_MEMORY
-from harness.model.fields import NO_TEXT, Flag, Strict
+from harness.model.fields import NO_TEXT, Strict
 from harness.model.json_text import read_toml
 from harness.model.reading import validate
 
@@ -26,7 +26,7 @@ class Range(Strict):
     start: float = Field(alias="from")
     stop: float = Field(alias="to")
     count: Annotated[int, Field(ge=1, le=MOST_RUNS), NO_TEXT]
-    log: Flag = False
+    log: StrictBool = False
 
     @model_validator(mode="after")
     def _positive_logs(self) -> Range:
@@ -105,7 +105,7 @@ class Curve(Strict):
     across: Annotated[str, Field(min_length=1, description="quantity on the axis; means are over all others")]
     apart: str = Field("", description="quantity each of whose values has a line of its own; methods otherwise")
     labels: dict[str, str] = Field(default_factory=dict, description="names of these lines, by value")
-    relative: Flag = Field(False, description="percent of change from the first value, instead of multipliers")
+    relative: StrictBool = Field(False, description="percent of change from the first value, instead of multipliers")
     level: float | None = Field(None, description="located on each line")
     x_label: str = ""
     read: str = Field("", description="how to read it")
@@ -130,7 +130,7 @@ class Study(Strict):
     samples: Annotated[int, Field(ge=1, le=MOST_RUNS), NO_TEXT] = 100
     seed: Annotated[int, Field(ge=0, description="of the draws"), NO_TEXT] = 0
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict, description="of methods, if not the defaults")
-    neighbours: Flag = Field(
+    neighbours: StrictBool = Field(
         False, description="runs use the mechanisms found on walls with the same joints, if the method supports it"
     )
     limits: StudyLimits = Field(default_factory=StudyLimits)
