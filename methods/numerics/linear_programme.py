@@ -76,20 +76,16 @@ class Programme:
         self._cost[index] = cost
         self.highs.changeColsCost(len(index), index, cost)
 
-    def stop_above(self, value: float) -> None:
-        """Let runs end as "above" as soon as their minimum is known to be above a value; infinity lets them go on.
-
-        The dual simplex method comes to know it long before a programme is proved to have no solution, which may take
-        it thousands of steps at a degenerate vertex.
-        """
-        self.highs.setOptionValue("objective_bound", value)
-
-    def run(self) -> tuple[str, FloatArray, FloatArray]:
+    def run(self, most: float = INFINITY) -> tuple[str, FloatArray, FloatArray]:
         """("optimal" | "infeasible" | "unbounded" | "above" | "unknown", column values, row duals).
+
+        It ends as "above" once the minimum is known to be above `most`. The dual simplex method comes to know it long
+        before a programme is proved to have no solution, which may take it thousands of steps at a degenerate vertex.
 
         Raises:
             OutOfTime: the time given is over; the library would hear of it only at its end.
         """
+        self.highs.setOptionValue("objective_bound", most)
         status = self._run()
         if status == highspy.HighsModelStatus.kUnboundedOrInfeasible:
             self.highs.setOptionValue("presolve", "off")

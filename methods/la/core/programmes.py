@@ -104,9 +104,7 @@ class StaticProgramme:
         self._programme.set_rows(self.problem.n_velocities, self._least_last, most)
         self._programme.set_columns(3 * m, np.array([-INFINITY if greatest else 0.0]), np.array([INFINITY]))
         self._programme.set_costs(3 * m, np.array([-1.0 if greatest else 1.0]))
-        self._programme.stop_above(below)
-        status, value, _ = self._programme.run()
-        self._programme.stop_above(INFINITY)
+        status, value, _ = self._programme.run(below)
         if status != "optimal":
             return status
         if value[-1] >= below:

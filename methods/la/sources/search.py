@@ -17,7 +17,7 @@ import numpy as np
 from harness.model.assembly import BoolArray, FloatArray
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.core.programmes import KinematicProgramme, StaticProgramme
+from methods.la.core.programmes import KinematicProgramme, KinematicSolution, StaticProgramme
 from methods.la.core.state import CollapseState, moving_contacts, residuals, tight_contacts
 from methods.la.interior.associated import AssociatedResult, EndOfPath, solve_associated
 from methods.la.interior.copies import path_ends
@@ -177,6 +177,10 @@ class Search:
             return None
         return CollapseState(solution.forces, solution.multiplier, velocities, moving)
 
+    def _lower(self, mechanism: KinematicSolution | None, state: CollapseState) -> CollapseState | None:
+        """The state of a mechanism, if there is one below another state."""
+        return None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates, state.multiplier)
+
     def solve_associated(self) -> AssociatedResult:
         """The greatest multiplier of statics alone, which is kept: no collapse state is above it."""
         self.associated = solve_associated(self.problem, self.newton, end=self.choices.associated)
@@ -263,7 +267,7 @@ class Search:
         slack = np.maximum(self.problem.slacks(state.forces), 0.0)
         self.budget.spent.programmes += 1
         mechanism = self.kinematic.solve(np.repeat(edge[:, None], 4, axis=1), slack)
-        return None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates, state.multiplier)
+        return self._lower(mechanism, state)
 
     def descend_from(self, states: Iterable[CollapseState]) -> list[CollapseState]:
         """Where ray descent leads from the lowest of the states that differ in multiplier."""
@@ -290,9 +294,7 @@ class Search:
             cost = self.generator.exponential(size=tight.shape) ** 2
             self.budget.spent.programmes += 1
             mechanism = self.kinematic.solve(tight, cost)
-            other = (
-                None if mechanism is None else self.state_of(mechanism.velocities, mechanism.rates, state.multiplier)
-            )
+            other = self._lower(mechanism, state)
             if other is not None and other.multiplier < state.multiplier - LEAST_IMPROVEMENT:
                 state, failures = other, 0
             else:
