@@ -97,7 +97,8 @@ class CapacityCurve:
 
     def plot(self) -> Figure:
         """The multiplier against the displacement, and the wall where it last bears a load."""
-        from reports.figures.settling import labelled, settled_figure
+        from reports.figures.settling import settled_figure
+        from reports.labels.numbers import labelled
 
         labels = (labelled(f"displacement of {self.control}", self.unit), "multiplier")
         return settled_figure(self.assembly, self.places[-1], (self.displacement, self.multiplier), labels)
@@ -127,7 +128,7 @@ def capacity(
     wall = checked_wall(wall)
     assembly = wall.assembly
     with in_file(wall.case.origin):
-        _check(wall, block)
+        _check(assembly, block)
     settings = {} if steps is None else steps.model_dump(mode="json")
     followed = run_followed(wall, "la-capacity", settings, partial(judge_every_state, tolerance=tolerance), runs)
     if isinstance(followed, str):
@@ -155,9 +156,8 @@ def _control(assembly: Assembly, block: str | None, places: FloatArray) -> float
     return float((live * places[:, :2]).sum() / np.hypot(live[:, 0], live[:, 1]).sum())
 
 
-def _check(wall: Wall, block: str | None) -> None:
+def _check(assembly: Assembly, block: str | None) -> None:
     """Refuse what is not followed. Raises InputError."""
-    assembly = wall.assembly
     if not assembly.has_live_load:
         raise InputError("the wall has no live load, so that it has no multiplier", "Give a live load", "loads.live")
     if np.any(assembly.support_motion):
@@ -165,4 +165,4 @@ def _check(wall: Wall, block: str | None) -> None:
         raise InputError("the wall has settlements", remedy, "settlements")
     if block is not None and block not in assembly.block_ids:
         raise unknown_block(block, "--block", Hints(assembly.block_ids))
-    check_simple(wall, "ask `drystone run` for the multiplier as drawn", assembly.dead, assembly.live)
+    check_simple(assembly, "ask `drystone run` for the multiplier as drawn", assembly.dead, assembly.live)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from drystone.certificates import certificate_line, certificate_runs
-from drystone.walls import Wall, checked_wall, library_wall, library_walls
+from drystone.walls import Wall, checked_walls, library_wall, library_walls
 from harness.engine import pipeline, regression
 from harness.engine.plan import check_methods, gated_runs
 from harness.engine.run import Limits, Run
@@ -81,8 +81,7 @@ def check(
     >>> drystone.check(drystone.library_wall("slide")).passed
     True
     """
-    given = [walls] if isinstance(walls, Wall | str | Path) else walls
-    chosen = map(library_wall, library_walls()) if given is None else map(checked_wall, given)
+    chosen = map(library_wall, library_walls()) if walls is None else checked_walls(walls)
     plan = planned([wall.case for wall in chosen], tier)
     with pipeline.opened_at(store) as opened:
         return held(plan, opened, jobs, fresh=fresh, progress=progress)

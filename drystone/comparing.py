@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from drystone.analysis import Result
 from drystone.certificates import with_certificates
-from drystone.walls import Wall, checked_wall
+from drystone.walls import Wall, checked_walls
 from harness.engine import compare as engine
 from harness.engine import pipeline
 from harness.engine.executors import Executor, InProcess, LocalExecutor
@@ -121,8 +121,7 @@ def compare(
     Raises:
         InputError: an unknown method, two walls of one name, or a store that is damaged.
     """
-    given = [checked_wall(each) for each in ([walls] if isinstance(walls, Wall | str | Path) else walls)]
-    chosen = [Wall(each) for wall in given for each in load_cases_of(wall.case)]
+    chosen = [Wall(each) for wall in checked_walls(walls) for each in load_cases_of(wall.case)]
     names = [wall.name for wall in chosen]
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)

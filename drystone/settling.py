@@ -15,7 +15,7 @@ from harness.engine.judge import judge
 from harness.engine.pipeline import Runs
 from harness.engine.settled_judge import judge_last_state, judged_as_one
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.errors import InputError, first_few
+from harness.model.errors import InputError, first_few, in_file
 from harness.model.followed import FollowedWall
 from harness.model.result import Judgement, Result
 
@@ -96,7 +96,8 @@ class SettledCollapse:
 
     def plot(self) -> Figure:
         """The reaction against the displacement, and the wall where it last stands."""
-        from reports.figures.settling import labelled, settled_figure
+        from reports.figures.settling import settled_figure
+        from reports.labels.numbers import labelled
 
         names = ("displacement of the supports", "least reaction")
         displacement, reaction = (labelled(name, unit) for name, unit in zip(names, self.units, strict=True))
@@ -116,7 +117,8 @@ def settled_until_collapse(wall: Wall, tolerance: float = 1e-9, *, runs: Runs = 
     """
     assembly = wall.assembly
     check_reactions(assembly, wall.case.origin)
-    check_simple(wall, "ask for the reactions as drawn", assembly.dead)
+    with in_file(wall.case.origin):
+        check_simple(assembly, "ask for the reactions as drawn", assembly.dead)
     followed = run_followed(wall, "la-settling", {}, partial(judge_last_state, tolerance=tolerance), runs)
     if isinstance(followed, str):
         return followed
@@ -176,17 +178,16 @@ def _apart(low: float, high: float | None) -> tuple[str, str]:
     return texts
 
 
-def check_simple(wall: Wall, instead: str, *loads: FloatArray) -> None:
+def check_simple(assembly: Assembly, instead: str, *loads: FloatArray) -> None:
     """Refuse what is not followed on updated geometry: strength, bars, and loads (n, 3) beside the centroids.
 
     Args:
-        wall: the wall; instead: what can be asked of a wall that has them, as "ask this".
+        assembly: the wall; instead: what can be asked of a wall that has them, as "ask this".
         loads: that act on it.
 
     Raises:
         InputError: naming what is not.
     """
-    assembly, file = wall.assembly, wall.case.origin
     faults = {
         "ties, props or passive fill": len(assembly.bars) > 0,
         "joints with cohesion or tensile strength": assembly.strong,
@@ -197,7 +198,6 @@ def check_simple(wall: Wall, instead: str, *loads: FloatArray) -> None:
         raise InputError(
             f"the wall has {what}, which are not followed on updated geometry",
             f"Leave them out, or {instead}",
-            source=file,
         )
     for load in loads:
         moment = abs(load[assembly.free, 2])
@@ -208,5 +208,4 @@ def check_simple(wall: Wall, instead: str, *loads: FloatArray) -> None:
             f"the load on {block} does not act at its centroid, and its arm changes as the block turns",
             f"Leave it out, or {instead}",
             "loads",
-            file,
         )

@@ -270,4 +270,4 @@ def _check(wall: Wall) -> None:
     if not np.abs(assembly.dead - own).max() <= 1e-9 * assembly.force_scale * max(1.0, assembly.length_scale):
         problem = "the dead load is not the weight of the blocks alone, and the mass of what else acts is not known"
         raise InputError(problem, "Leave other dead loads out and do not turn gravity", "loads.dead")
-    check_simple(wall, "ask `drystone run` for the multiplier of a horizontal load")
+    check_simple(assembly, "ask `drystone run` for the multiplier of a horizontal load")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -149,6 +149,12 @@ def checked_wall(given: object) -> Wall:
     path = isinstance(given, str | Path)
     remedy = f"Give drystone.read_wall({called})" if path else "Give what read_wall or build_wall returns"
     raise InputError(f"{called} is no wall", remedy, "wall")
+
+
+def checked_walls(given: Any) -> list[Wall]:
+    """What a user gives as one wall or several. Raises InputError as `checked_wall`."""
+    several = isinstance(given, Iterable) and not isinstance(given, str)
+    return [checked_wall(each) for each in (given if several else [given])]
 
 
 def _check(case: Case) -> None:

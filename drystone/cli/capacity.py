@@ -24,6 +24,7 @@ from drystone.cli.options import (
 from drystone.walls import Wall
 from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
+from reports.labels.numbers import labelled
 
 
 @click.command()
@@ -63,8 +64,7 @@ def capacity(
         print_json(answer.as_json() | told)
     else:
         say(answer.sentence)
-        head = "displacement" + f" [{answer.unit}]" * bool(answer.unit)
-        say(f"{head:>18} {'multiplier':>14}")
+        say(f"{labelled('displacement', answer.unit):>18} {'multiplier':>14}")
         for x, y in zip(answer.displacement.tolist(), answer.multiplier.tolist(), strict=True):
             say(f"{x:18.7g} {y:14.7g}")
     sys.exit(0 if answer.accepted else 1)

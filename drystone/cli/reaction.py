@@ -29,6 +29,7 @@ from harness.engine.pipeline import Runs
 from harness.engine.plan import find_cases
 from harness.model.errors import InputError, first_few
 from harness.model.input_checks import plastic_strength
+from reports.labels.numbers import labelled
 
 Besides = dict[str, list[str]] | None
 """What a JSON document says besides its answer; None where text is printed."""
@@ -163,8 +164,7 @@ def _print_paths(wall: Wall, by: str | None, runs: Runs, output: Path | None, be
         print_json({name: each.as_json() for name, each in zip(names, answer, strict=True)} | besides)
     else:
         for each in answer:
-            length, unit = each.units
-            heads = ["displacement" + f" [{length}]" * bool(length), "reaction" + f" [{unit}]" * bool(unit)]
+            heads = [labelled(name, unit) for name, unit in zip(("displacement", "reaction"), each.units, strict=True)]
             say(each.sentence)
             say(f"{heads[0]:>18} {heads[1]:>18}")
             for x, y in zip(each.displacement.tolist(), each.reaction.tolist(), strict=True):

@@ -193,9 +193,8 @@ def _found(run: Run, store: Store, summaries: Mapping[str, dict[str, Any]] | Non
 
 def _word(run: Run, assembly: Assembly, result: Result, tolerance: float) -> Judgement:
     said = (run.judge or judge)(assembly, result, tolerance)
-    return said.model_copy(
-        update={"code": "" if run.judge else judge_version()}
-    )  # the word of its own judge is its own
+    code = "" if run.judge else judge_version()  # the word of its own judge counts for this run alone
+    return said.model_copy(update={"code": code})
 
 
 def _held(run: Run, result: Result) -> Result:

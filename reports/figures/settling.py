@@ -13,17 +13,13 @@ from reports.drawing.looks import COLOURS
 from reports.drawing.wall_drawing import displaced_drawing
 from reports.figures.figures import COLUMN, PAGE, style
 from reports.figures.plot import plot
+from reports.labels.numbers import labelled
 
 _BEYOND = 1.5
 """Multiple of the displacement from which the last reaction is constant, up to which paths are drawn."""
 
 Curve = tuple[str, FloatArray, FloatArray, float | None]
 """A name, displacements (k,), reactions (k,), and the displacement from which the reaction is constant."""
-
-
-def labelled(name: str, unit: str) -> str:
-    """The name of an axis with its unit in brackets, if it has one."""
-    return f"{name} [{unit}]" if unit else name
 
 
 def reaction_figure(

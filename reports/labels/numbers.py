@@ -130,3 +130,8 @@ def count(number: int, noun: str) -> str:
 def met(held: int, tested: int, noun: str, of: str = "") -> str:
     """How many of what was tested are met, e.g. "2 of 3 references are met"; `of` follows the noun, as " of theory"."""
     return f"{held} of {count(tested, noun)}{of} {'is' if 1 in (held, tested) else 'are'} met"
+
+
+def labelled(name: str, unit: str) -> str:
+    """The name of an axis or a column with its unit in brackets, if it has one."""
+    return f"{name} [{unit}]" if unit else name
