@@ -8,6 +8,8 @@ q = (open1, open2, slip), as strains are defined in `assembly`. A slip lifts bot
 0 <= psi <= mu: E = S' for psi = mu (associated flow), and nothing is lifted for psi = 0. The work that the joint takes
 is -q . r = s0 . g for associated flow, and (mu - psi) N times the slip more for any other. Sources: Coulomb (1776);
 Drucker (1954) for flow with dilatancy; Baggio and Trovalusci (1995); Orduna and Lourenco (2003) for cohesion, tension.
+
+A law of more rows is that of several joints in series (`methods.numerics.joints_in_series`).
 """
 
 from __future__ import annotations

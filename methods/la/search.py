@@ -16,7 +16,7 @@ from methods.la.least import least_known
 from methods.la.methods import LA
 from methods.la.sources import from_motions
 from methods.la.sources.search import Choices
-from methods.numerics.pressed_search import StripTolerances, by_strips, or_state_of_greatest
+from methods.la.tangent_search import TangentTolerances, by_tangents
 from methods.numerics.stress_blocks import greatest_by_chords
 from methods.springs.warm_up import load_kernels
 
@@ -28,13 +28,11 @@ class LimitAnalysis(LimitAnalysisFamily):
 
     Args:
         choices: how its search solves its programmes.
-        strips: how walls whose joints crush are set in.
+        tangents: how the stress blocks of joints that crush are approached.
     """
 
-    def __init__(
-        self, choices: Choices = Choices(), strips: StripTolerances = StripTolerances(rounds=6, least=True)
-    ) -> None:
-        self._choices, self._strips = choices, strips
+    def __init__(self, choices: Choices = Choices(), tangents: TangentTolerances = TangentTolerances()) -> None:
+        self._choices, self._tangents = choices, tangents
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The search that the settings ask for, and a lower bound where they ask for one."""
@@ -46,13 +44,12 @@ class LimitAnalysis(LimitAnalysisFamily):
         return with_bound(assembly, problem, known, settings.bound)
 
     def crushing(self, assembly: Assembly, settings: Any, answer: Answering | None) -> Answer:
-        """The least of the states of the stress blocks that walls with joints set in lead to; nothing is proved."""
+        """The least of the states of the stress blocks that the search finds within tangents; nothing is proved."""
         early = dead_load_decides(assembly, greatest_by_chords)
         if isinstance(early, Answer):
             return early
         unproved = settings.model_copy(update={"bound_seconds": 0.0})
-        found = by_strips(assembly, lambda wall: self._of_component(wall, unproved, answer), self._strips)
-        return or_state_of_greatest(assembly, found)
+        return by_tangents(assembly, lambda wall: self._of_component(wall, unproved, answer), self._tangents)
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.

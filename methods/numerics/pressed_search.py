@@ -13,10 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.claims import growing_forces, no_answer
-from methods.numerics.pressed_state import PressedState, exact_state, moving_rows, rows_at_limits
+from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 from methods.numerics.stress_blocks import greatest_by_chords
 
@@ -33,68 +32,21 @@ class StripTolerances:
         settled: change of shares at which forces of rest are within the stress blocks to rounding.
         most: share above which a joint has no length left to set in.
         rounds: of answers, at most.
-        least: the method looks for the least state, so that any exact one is an answer, and the least of them the best.
     """
 
     agrees: float = 1e-6
     settled: float = 1e-12
     most: float = 0.999
     rounds: int = 20
-    least: bool = False
 
 
 def by_strips(assembly: Assembly, solve: Solve, options: StripTolerances = StripTolerances()) -> Answer:
-    """The answer for a component whose joints crush; where the time is over, that with the least state known.
+    """The answer for a component whose joints crush.
 
     Args:
         assembly: the component; solve: answers for the same with joints that do not crush and are set in.
         options: when it is found.
     """
-    found: list[_StateOfStrips] = []
-
-    def known() -> Answer:
-        if not (found and options.least):
-            raise OutOfTime
-        answer = _with_state(_least(found), len(found))
-        return replace(answer, details=answer.details | {"stopped_by_limit": True})
-
-    return best_so_far(lambda: _to_its_end(assembly, solve, options, found), known)
-
-
-def or_state_of_greatest(assembly: Assembly, answer: Answer) -> Answer:
-    """The answer of a run that came to none, with the state of the greatest multiplier of statics if that is one.
-
-    Its mechanism is one of any flow where nothing slips in it, as under a load that crushes what is below: then walls
-    whose joints are set in bear it without end.
-    """
-    if answer.status is not Status.NOT_CONVERGED:
-        return answer
-    greatest = greatest_by_chords(assembly, assembly.dead, assembly.live)
-    if greatest.outcome != "optimal" or greatest.forces is None or greatest.mechanism is None:
-        return answer
-    limits = rows_at_limits(assembly, greatest.forces, greatest.mechanism)
-    state = exact_state(assembly, greatest.forces, limits)
-    if state is None or not state.multiplier > 0.0:
-        return answer
-    return replace(
-        _at(answer, state),
-        status=Status.OK,
-        finding=Finding.COLLAPSES,
-        sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, the greatest multiplier of "
-        "statics, with joints that crush: its mechanism slips nowhere where it would lift more than the joints do.",
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _StateOfStrips:
-    """An exact state of the stress blocks, and the answer for the wall set in that led to it."""
-
-    state: PressedState
-    answer: Answer
-
-
-def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, found: list[_StateOfStrips]) -> Answer:
-    """As `by_strips`, in as many rounds as there may be; `found` gets the exact states."""
     share = stood = np.zeros(assembly.n_interfaces)
     way, distance = 1.0, np.inf
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
@@ -112,9 +64,8 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
         if answer.finding is Finding.COLLAPSES:
             state = _state_beside(assembly, wall, answer, forces)
             if state is not None:
-                found.append(_StateOfStrips(state, answer))
                 if _agree(assembly, answer, state, options.agrees):
-                    return _with_state(_least(found) if options.least else found[-1], rounds)
+                    return _with_state(answer, state, rounds)
                 forces = state.forces
         towards = np.minimum(pressed_shares(assembly, forces), options.most) - share
         # Two states that lead to each other would take turns for ever: half the way, then, and half of that.
@@ -123,8 +74,6 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: StripTolerances, foun
         share = share + way * towards
         if answer.finding is Finding.STANDS and abs(share - stood).max() <= options.settled:
             return replace(answer, forces=forces)
-    if found and options.least:
-        return _with_state(_least(found), options.rounds)
     near = "" if answer.multiplier is None else f"; the last of them collapses at {answer.multiplier:.6g}"
     return not_found(
         assembly,
@@ -159,27 +108,23 @@ def ends_at(assembly: Assembly, answer: Answer, share: FloatArray) -> Answer | N
     return no_answer(answer, f"a wall whose joints are set in has no answer to go on from: {answer.sentence}")
 
 
-def _least(found: list[_StateOfStrips]) -> _StateOfStrips:
-    return min(found, key=lambda one: one.state.multiplier)
-
-
 def _falling_mechanism(assembly: Assembly) -> FloatArray | None:
     """A dilatant mechanism (n, 3) on which the dead load does more work than the joints take; None if none is found."""
     own = greatest_by_chords(assembly, np.zeros_like(assembly.dead), assembly.dead, 2.0)
     return own.mechanism if own.upper < 1.0 else None
 
 
-def _with_state(found: _StateOfStrips, rounds: int) -> Answer:
+def _with_state(answer: Answer, state: PressedState, rounds: int) -> Answer:
     """The answer with an exact state of the stress blocks in place of that of a wall that is set in."""
     sentence = (
-        f"The wall collapses at {found.state.multiplier:.7g} times the live load, with joints that crush: a state of "
+        f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state of "
         f"their stress blocks, found in round {rounds} of setting joints in to the middle of what they press."
     )
-    answer = _at(found.answer, found.state)
+    answer = at_state(answer, state)
     return replace(answer, sentence=sentence, details=answer.details | {"set_in_walls": rounds})
 
 
-def _at(answer: Answer, state: PressedState) -> Answer:
+def at_state(answer: Answer, state: PressedState) -> Answer:
     """An answer with a state of the stress blocks in place of its own, and without what is true of that alone."""
     return replace(
         answer,

@@ -84,9 +84,8 @@ def test_wall_of_bricks_slides_and_crushes_below_the_associated_maximum(name: st
     assert result.multiplier < 0.571732
 
 
-@pytest.mark.parametrize("name", TAKE)
-def test_walls_that_press_more_than_half_of_a_joint_have_no_answer_rather_than_a_wrong_one(name: str):
-    result, judgement = answered(load_method(name), wall_of_bricks(20.0), **SHORT[name])
+def test_walls_that_press_more_than_half_of_a_joint_have_no_answer_rather_than_a_wrong_one():
+    result, judgement = answered(load_method("fe"), wall_of_bricks(20.0))
     assert result.status is Status.NOT_CONVERGED
     assert result.multiplier is None
     assert "no collapse state of the joints that crush" in result.sentence

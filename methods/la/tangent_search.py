@@ -1,0 +1,209 @@
+"""The least collapse state known where joints crush: the search on walls whose stress blocks are cut by tangents.
+
+A stress block bounds the moments about both ends of a joint by n_i + T/2 >= F^2 / (2 F0), F = n1 + n2 + T, of which
+each tangent at a share a = F / F0 is a limit on the moment about a point of the joint,
+
+    (1 - a) m1 - a m2 + a^2 F0 / 2 >= 0,   m_i = n_i + T/2,
+
+the row of a joint in series (`methods.numerics.joints_in_series`). The search finds a collapse state within the
+tangents known so far; where its forces are outside of a stress block, a tangent at them is added (Kelley 1960), until
+its state is one of the stress blocks to rounding (`methods.numerics.pressed_state`). Its flow is theirs too: a joint
+turns about the inner edge of its pressed strip. Source: Orduna and Lourenco (2003) for the stress block.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from harness.model.deadline import OutOfTime, best_so_far
+from harness.model.method import Answer, Finding, Status
+from methods.la.answers import not_converged
+from methods.la.crushing import crushing_answer
+from methods.numerics.joints_in_series import FurtherLimits, in_series
+from methods.numerics.pressed_search import at_state, not_found
+from methods.numerics.pressed_state import PressedState, exact_state, moving_rows, rows_at_limits
+from methods.numerics.pressed_strips import pressed_shares
+from methods.numerics.stress_blocks import BlockLimit, greatest_by_chords
+
+Solve = Callable[[Assembly], Answer]
+
+
+@dataclass(frozen=True)
+class TangentTolerances:
+    """How tangents are added.
+
+    Attributes:
+        agrees: difference of the multipliers of a state within tangents and of the exact one of its mechanism, relative
+            to them or to the load unit, at which they are the same to rounding.
+        broken: slack of a stress block, in mean weights of a block, below which forces are outside.
+        apart: relative difference of the shares of two tangents of one end below which the newer replaces the older.
+        pressed: least share that has a tangent: below, the joint does as one that does not crush, to rounding.
+        rounds: of searches, at most. Once the mechanism stays, each round squares the difference.
+    """
+
+    agrees: float = 1e-9
+    broken: float = -1e-11
+    apart: float = 1e-3
+    pressed: float = 1e-9
+    rounds: int = 10
+
+
+def by_tangents(assembly: Assembly, solve: Solve, options: TangentTolerances = TangentTolerances()) -> Answer:
+    """The answer for a component whose joints crush and which bears its dead load, with the least state that is found.
+
+    Args:
+        assembly: the component; solve: searches the same with joints that do not crush and have further limits.
+        options: when it is found.
+    """
+    greatest = greatest_by_chords(assembly, assembly.dead, assembly.live)
+    if greatest.outcome != "optimal" or greatest.forces is None:
+        return crushing_answer(assembly, greatest_by_chords)
+    found: list[Answer] = []
+
+    def known() -> Answer:
+        if not found:
+            raise OutOfTime
+        answer = _least(found)
+        return replace(answer, details=answer.details | {"stopped_by_limit": True})
+
+    return best_so_far(lambda: _to_its_end(assembly, greatest, solve, options, found), known)
+
+
+@dataclass(frozen=True, eq=False)
+class _Tangents:
+    """k tangents: their joints (k,), the ends (k,), 0 or 1, whose limit they touch, and the shares (k,)."""
+
+    joint: IntArray
+    end: IntArray
+    share: FloatArray
+
+    @classmethod
+    def at(cls, share: FloatArray, chosen: BoolArray) -> _Tangents:
+        """Tangents at shares (m,) of the joints, at the ends `chosen` (m, 2)."""
+        joint, end = (index.astype(np.int64) for index in np.nonzero(chosen))
+        return cls(joint, end, share[joint])
+
+    def with_more(self, more: _Tangents, apart: float) -> _Tangents:
+        """These and more, which replace those that are nearly the same."""
+        same = (self.joint[:, None] == more.joint) & (self.end[:, None] == more.end)
+        near = same & (abs(self.share[:, None] - more.share) <= apart * more.share)
+        kept = ~near.any(axis=1)
+        parts = ((getattr(self, name)[kept], getattr(more, name)) for name in ("joint", "end", "share"))
+        return _Tangents(*(np.concatenate(part) for part in parts))
+
+    def limits(self, assembly: Assembly) -> FurtherLimits:
+        """Their rows. The force at the other contact point and the shear, which they do not bound, never reach theirs.
+
+        The contact points of a tangent are its point on the joint, and one a length of the joint further towards the
+        end that it touches: the force there is the moment about the first, over that length.
+        """
+        joint, share, k = self.joint, self.share[:, None], len(self.joint)
+        along = np.where(self.end == 0, 1.0, -1.0)[:, None] * (assembly.end2 - assembly.end1)[joint]
+        about = np.where((self.end == 0)[:, None], assembly.end2[joint], assembly.end1[joint]) - share * along
+        first = (self.end == 0)[:, None]
+        tension = assembly.constant[joint, 0] + assembly.constant[joint, 1]
+        unit = assembly.force_scale / assembly.n_free
+        constant = np.empty((k, 4))
+        constant[:, 2:] = assembly.constant[joint, 2:] + unit
+        constant[np.arange(k), 1 - self.end] = tension * (0.5 + self.share) + unit
+        full = assembly.crushing[joint] + tension
+        constant[np.arange(k), self.end] = tension * (0.5 - self.share) + 0.5 * self.share**2 * full
+        return FurtherLimits(
+            joint,
+            np.where(first, about - along, about),
+            np.where(first, about, about - along),
+            assembly.friction[joint],
+            np.zeros(k),
+            constant,
+        )
+
+    def rows_moved(self, wall: Assembly, answer: Answer) -> BoolArray:
+        """(m, 4) rows of the stress blocks along which the joints move in an answer for the wall with these limits."""
+        assert answer.mechanism is not None
+        rows = moving_rows(wall, answer.mechanism)
+        moving, more = rows[: len(rows) - len(self.joint)], rows[len(rows) - len(self.joint) :]
+        np.logical_or.at(moving, (self.joint, self.end), more[np.arange(len(self.joint)), self.end])
+        return moving
+
+
+def _to_its_end(
+    assembly: Assembly, greatest: BlockLimit, solve: Solve, options: TangentTolerances, found: list[Answer]
+) -> Answer:
+    """As `by_tangents`, in as many rounds as there may be; `found` gets the answers with exact states."""
+    m, every = assembly.n_interfaces, np.isfinite(assembly.crushing)[:, None] & np.ones(2, dtype=bool)
+    assert greatest.forces is not None
+    forces = greatest.forces
+    share = np.minimum(pressed_shares(assembly, forces), 1.0)
+    nearer = forces[:, :2] <= forces[:, 1::-1]
+    tangents = _Tangents.at(share, (share > options.pressed)[:, None] & nearer)
+    for rounds in range(1, options.rounds + 1):
+        wall = in_series(replace(assembly, crushing=np.full(m, np.inf)), tangents.limits(assembly))
+        answer = solve(wall)
+        if answer.finding is Finding.UNBOUNDED:
+            tangents = tangents.with_more(_Tangents.at(np.ones(m), every), options.apart)
+            continue
+        if answer.forces is None or answer.mechanism is None or answer.multiplier is None:
+            break
+        forces = answer.forces[:m]
+        state = exact_state(assembly, forces, tangents.rows_moved(wall, answer))
+        if state is not None and state.multiplier > 0.0:
+            found.append(_with_state(answer, state, rounds))
+            size = max(assembly.load_unit, state.multiplier)
+            if abs(answer.multiplier - state.multiplier) <= options.agrees * size:
+                break
+        share = np.minimum(pressed_shares(assembly, forces), 1.0)
+        outside = _slacks(assembly, forces) < options.broken * assembly.force_scale / assembly.n_free
+        if not outside.any():
+            break
+        tangents = tangents.with_more(_Tangents.at(share, outside & every), options.apart)
+    if found:
+        return _least(found)
+    return _state_of_greatest(assembly, greatest) or not_found(
+        assembly,
+        not_converged(""),
+        f"no collapse state of the joints that crush is known after round {rounds} of a search within tangents of "
+        f"their stress blocks; statics bears no more than {greatest.upper:.7g}",
+    )
+
+
+def _slacks(assembly: Assembly, forces: FloatArray) -> FloatArray:
+    """(m, 2) slacks n_i + T/2 - F^2 / (2 F0) of contact forces (m, 3) [force]."""
+    ends = assembly.constant[:, :2]
+    full = np.where(np.isfinite(assembly.crushing), assembly.crushing + ends.sum(axis=1), 0.0)
+    return np.asarray(forces[:, :2] + ends - (0.5 * pressed_shares(assembly, forces) ** 2 * full)[:, None])
+
+
+def _least(found: list[Answer]) -> Answer:
+    return min(found, key=lambda answer: answer.multiplier or 0.0)
+
+
+def _with_state(answer: Answer, state: PressedState, rounds: int) -> Answer:
+    """The answer for the wall with an exact state of its stress blocks."""
+    sentence = (
+        f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state of their "
+        f"stress blocks, found in round {rounds} of a search within tangents of them."
+    )
+    exact = at_state(answer, state)
+    return replace(exact, sentence=sentence, details=exact.details | {"searches": rounds})
+
+
+def _state_of_greatest(assembly: Assembly, greatest: BlockLimit) -> Answer | None:
+    """The state of the greatest multiplier of statics, if that is one without dilatancy; None if not.
+
+    Its mechanism is one of any flow where nothing slips in it, as under a load that crushes what is below.
+    """
+    if greatest.forces is None or greatest.mechanism is None:
+        return None
+    state = exact_state(assembly, greatest.forces, rows_at_limits(assembly, greatest.forces, greatest.mechanism))
+    if state is None or not state.multiplier > 0.0:
+        return None
+    sentence = (
+        f"The wall collapses at {state.multiplier:.7g} times the live load, the greatest multiplier of statics, with "
+        "joints that crush: its mechanism slips nowhere where it would lift more than the joints do."
+    )
+    answer = Answer(Status.OK, Finding.COLLAPSES, sentence, flow="non-associated", iterations=greatest.rounds)
+    return at_state(answer, state)
