@@ -165,8 +165,8 @@ def _to_its_end(
     return _state_of_greatest(assembly, greatest) or not_found(
         assembly,
         not_converged(""),
-        f"no collapse state of the joints that crush is known after round {rounds} of a search within tangents of "
-        f"their stress blocks; statics bears no more than {greatest.upper:.7g}",
+        f"no collapse state of the joints that crush is known; {rounds} rounds of a search within tangents of their "
+        f"stress blocks led to none, and statics bears no more than {greatest.upper:.7g}",
     )
 
 

@@ -74,7 +74,7 @@ def test_a_wall_of_which_one_search_knows_no_exact_state_has_no_answer_rather_th
     once = LimitAnalysis(tangents=TangentTolerances(rounds=1)).solve(wall, SearchSettings())
     assert once.status is Status.NOT_CONVERGED
     assert once.multiplier is None
-    assert "after round 1 of a search" in once.sentence
+    assert "1 rounds of a search within tangents" in once.sentence
 
 
 def test_a_load_that_joints_that_do_not_crush_bear_without_end_is_without_end():
