@@ -6,6 +6,7 @@ associated maximum and, in these walls, above the value without strength.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,18 @@ def test_one_block(
     """It slides at mu + c A / W or topples at (b / h)(1 + T / W), also where no cohesion is left beside the tension."""
     wall = assembly(stack(1, width, height), friction, cohesion=cohesion, tensile_strength=tension)
     assert found(wall, name).multiplier == pytest.approx(value, rel=ROUND_OFF)
+
+
+@pytest.mark.parametrize("settings", [{}, {"points": 5}, {"rule": "lobatto", "points": 4}])
+def test_ends_of_a_joint_may_bear_unequal_tension(settings: dict[str, Any]):
+    """A block topples to the right where the left end has reached its tension t: (b / h)(1 + 2 t / W)."""
+    wall = assembly(stack(1, 0.4, 2.0), 1.0, cohesion=8.0)
+    for tension in ([3.0, 1.0], [1.0, 3.0], [0.0, 2.0]):
+        constant = wall.constant.copy()
+        constant[0, :2] = tension
+        uneven = replace(wall, constant=constant)
+        left = tension[0] if wall.end1[0, 0] < wall.end2[0, 0] else tension[1]
+        assert found(uneven, "fe", **settings).multiplier == pytest.approx(0.2 * (1.0 + left / 8.0), rel=ROUND_OFF)
 
 
 @pytest.mark.parametrize(
