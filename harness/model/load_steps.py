@@ -74,3 +74,26 @@ class LoadSteps:
         k = len(self.multiplier)
         shapes = self.displacements.shape, self.forces.shape, self.states.shape
         return k > 0 and shapes == ((k, n, 3), (k, m, 3), (k, m))
+
+
+def without_series(details: dict[str, Any], n: int, joint: IntArray) -> dict[str, Any]:
+    """Details in which steps of a wall with k more blocks and joints, in series with these (k,), are of its n blocks.
+
+    A joint of which one in series slips, rocks or opens does so.
+    """
+    data = details.get(NAME)
+    if not isinstance(data, dict):
+        return details
+    states = np.array(data["states"], dtype=np.int64)
+    m = states.shape[1] - len(joint)
+    own = states[:, :m].copy()
+    for i, p in enumerate(joint):
+        own[:, p] = np.maximum(own[:, p], states[:, m + i])
+    of_wall = LoadSteps(
+        tuple(data["blocks"][:n]),
+        np.array(data["multiplier"], dtype=float),
+        np.array(data["displacements"], dtype=float)[:, :n],
+        np.array(data["forces"], dtype=float)[:, :m],
+        own,
+    )
+    return details | of_wall.as_details()

@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.claims import no_answer
-from methods.numerics.pressed_search import ends_at, is_lost, not_found
+from methods.numerics.crushing_claims import ends_at, falling_mechanism, not_found
 from methods.numerics.pressed_state import held_forces, nearest_motion
 from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
 
@@ -45,10 +45,10 @@ def held_by_strips(
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
         answer = solve(set_in(assembly, share))
-        if abs(share - stood).max() > 0.0 and is_lost(assembly, answer):
+        if abs(share - stood).max() > 0.0 and _is_lost(assembly, answer):
             share = 0.5 * (share + stood)  # pressed by forces of a load that is further from this one
             continue
-        ends = ends_at(assembly, answer, share)
+        ends = ends_at(assembly, answer, "as its joints are set in" if share.any() else "")
         if ends is not None:
             return ends
         assert answer.forces is not None
@@ -61,6 +61,12 @@ def held_by_strips(
         share, before = np.minimum(pressed_shares(assembly, forces), options.most), multiplier
     sentence = f"the multiplier did not settle over {options.rounds} walls whose joints were set in"
     return not_found(assembly, answer, sentence)
+
+
+def _is_lost(assembly: Assembly, answer: Answer) -> bool:
+    """Whether a wall set in has no state to follow, although statics does not show that the wall itself falls."""
+    lost = answer.finding in (Finding.FALLS, Finding.NONE) and answer.status is not Status.REFUSED
+    return lost and falling_mechanism(assembly) is None
 
 
 def _with_held(assembly: Assembly, share: FloatArray, answer: Answer, held: FloatArray, rounds: int) -> Answer:

@@ -28,9 +28,9 @@ from methods.fe.convex_steps import bracket_collapse
 from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history, with_initial_shear
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
-from methods.numerics.pressed_search import by_strips
 from methods.numerics.residual_strength import by_component
 from methods.numerics.statics import admissible_forces
+from methods.numerics.tangent_search import by_tangents
 from methods.springs.model.factor import Factor, make_factor
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.path_record import PathEnd
@@ -94,7 +94,7 @@ class GapSprings(Solver):
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.crushes:
-            return by_strips(assembly, lambda wall: self._of_component(wall, settings))
+            return by_tangents(assembly, lambda wall: self._of_component(wall, settings))
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
         if answer.finding != Finding.COLLAPSES and float(assembly.friction.max(initial=0.0)) > settings.friction_cap:
             answer = self._solve(build_model(assembly, settings), settings)

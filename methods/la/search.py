@@ -16,8 +16,8 @@ from methods.la.least import least_known
 from methods.la.methods import LA
 from methods.la.sources import from_motions
 from methods.la.sources.search import Choices
-from methods.la.tangent_search import TangentTolerances, by_tangents
 from methods.numerics.stress_blocks import greatest_by_chords
+from methods.numerics.tangent_search import TangentTolerances, by_tangents
 from methods.springs.warm_up import load_kernels
 
 load_kernels()

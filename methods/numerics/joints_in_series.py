@@ -18,6 +18,9 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
+from harness.model.breakpoints import of_whole_wall
+from harness.model.load_steps import without_series
+from harness.model.method import Answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,4 +86,22 @@ def in_series(assembly: Assembly, limits: FurtherLimits) -> Assembly:
         joint=assembly.joint + tuple(assembly.joint[p] for p in joint),
         block_b=np.concatenate([beyond, second]),
         **arrays,
+    )
+
+
+def without_limits(answer: Answer, assembly: Assembly, limits: FurtherLimits) -> Answer:
+    """The answer for a wall whose joints have further limits, of its own n blocks and m joints alone.
+
+    What a further joint does on a path, its joint does.
+    """
+    n, m = assembly.n_blocks, assembly.n_interfaces
+    details = without_series(answer.details, n, limits.joint)
+    if "moving_blocks" in details:
+        details = details | {"moving_blocks": [b for b in details["moving_blocks"] if b in assembly.block_ids]}
+    return replace(
+        answer,
+        forces=None if answer.forces is None else answer.forces[:m],
+        mechanism=None if answer.mechanism is None else answer.mechanism[:n],
+        path=of_whole_wall(answer.path, np.append(np.arange(m), limits.joint)),
+        details=details,
     )

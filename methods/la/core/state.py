@@ -57,7 +57,7 @@ def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray,
     """What is wrong about a state where it arises: equilibrium (n,) of blocks, tension and closing (m,) of interfaces.
 
     Equilibrium is relative to the largest force or load on its block, yield to the lesser of those of its two blocks,
-    closing to the faster of them.
+    closing to the faster of them. A block without load, which may bear nothing, has at least the size of the lightest.
     """
     assembly = problem.assembly
     n = problem.n_velocities // 3
@@ -65,6 +65,8 @@ def local_residuals(problem: Problem, state: CollapseState) -> tuple[FloatArray,
     terms = np.asarray(abs(problem.statics) @ abs(state.forces.ravel())) + abs(problem.dead)
     terms += abs(state.multiplier * problem.live)
     size = terms.reshape(-1, 3).max(axis=1)
+    loaded = (abs(problem.dead) + abs(problem.live)).reshape(-1, 3).any(axis=1)
+    size[~loaded] = np.maximum(size[~loaded], size[loaded].min(initial=np.inf, where=size[loaded] > 0.0))
     rates = problem.rates_of_velocities(state.velocities, state.associated)
     speed = abs(state.velocities.reshape(-1, 3)).max(axis=1)
     place = np.full(assembly.n_blocks, n)

@@ -1,13 +1,13 @@
-"""The least collapse state known where joints crush: the search on walls whose stress blocks are cut by tangents.
+"""The collapse state where joints crush, of any method: its answers for walls within tangents of the stress blocks.
 
 A stress block bounds the moments about both ends of a joint by n_i + T/2 >= F^2 / (2 F0), F = n1 + n2 + T, of which
 each tangent at a share a = F / F0 is a limit on the moment about a point of the joint,
 
     (1 - a) m1 - a m2 + a^2 F0 / 2 >= 0,   m_i = n_i + T/2,
 
-the row of a joint in series (`methods.numerics.joints_in_series`). The search finds a collapse state within the
-tangents known so far; where its forces are outside of a stress block, a tangent at them is added (Kelley 1960), until
-its state is one of the stress blocks to rounding (`methods.numerics.pressed_state`). Its flow is theirs too: a joint
+the row of a joint in series (`methods.numerics.joints_in_series`). The method finds a state within the tangents known
+so far; where its forces are outside of a stress block, a tangent at them is added (Kelley 1960), until its collapse
+state is one of the stress blocks to rounding (`methods.numerics.pressed_state`). Its flow is theirs too: a joint
 turns about the inner edge of its pressed strip. Source: Orduna and Lourenco (2003) for the stress block.
 """
 
@@ -21,13 +21,12 @@ import numpy as np
 from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
 from harness.model.deadline import OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status
-from methods.la.answers import not_converged
-from methods.la.crushing import crushing_answer
-from methods.numerics.joints_in_series import FurtherLimits, in_series
-from methods.numerics.pressed_search import at_state, not_found
-from methods.numerics.pressed_state import PressedState, exact_state, moving_rows, rows_at_limits
+from methods.numerics.claims import growing_forces
+from methods.numerics.crushing_claims import ends_at, not_found
+from methods.numerics.joints_in_series import FurtherLimits, in_series, without_limits
+from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
 from methods.numerics.pressed_strips import pressed_shares
-from methods.numerics.stress_blocks import BlockLimit, greatest_by_chords
+from methods.numerics.stress_blocks import greatest_by_chords
 
 Solve = Callable[[Assembly], Answer]
 
@@ -48,20 +47,19 @@ class TangentTolerances:
     agrees: float = 1e-9
     broken: float = -1e-11
     apart: float = 1e-3
-    pressed: float = 1e-9
+    pressed: float = 1e-6
     rounds: int = 10
 
 
 def by_tangents(assembly: Assembly, solve: Solve, options: TangentTolerances = TangentTolerances()) -> Answer:
-    """The answer for a component whose joints crush and which bears its dead load, with the least state that is found.
+    """The answer for a component whose joints crush, with the least state that is found.
+
+    The first tangents are those at the forces of the greatest multiplier of statics; what is found is within any.
 
     Args:
-        assembly: the component; solve: searches the same with joints that do not crush and have further limits.
+        assembly: the component; solve: answers for the same with joints that do not crush and have further limits.
         options: when it is found.
     """
-    greatest = greatest_by_chords(assembly, assembly.dead, assembly.live)
-    if greatest.outcome != "optimal" or greatest.forces is None:
-        return crushing_answer(assembly, greatest_by_chords)
     found: list[Answer] = []
 
     def known() -> Answer:
@@ -70,7 +68,7 @@ def by_tangents(assembly: Assembly, solve: Solve, options: TangentTolerances = T
         answer = _least(found)
         return replace(answer, details=answer.details | {"stopped_by_limit": True})
 
-    return best_so_far(lambda: _to_its_end(assembly, greatest, solve, options, found), known)
+    return best_so_far(lambda: _to_its_end(assembly, solve, options, found), known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,44 +128,73 @@ class _Tangents:
         return moving
 
 
-def _to_its_end(
-    assembly: Assembly, greatest: BlockLimit, solve: Solve, options: TangentTolerances, found: list[Answer]
-) -> Answer:
+def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, found: list[Answer]) -> Answer:
     """As `by_tangents`, in as many rounds as there may be; `found` gets the answers with exact states."""
-    m, every = assembly.n_interfaces, np.isfinite(assembly.crushing)[:, None] & np.ones(2, dtype=bool)
-    assert greatest.forces is not None
-    forces = greatest.forces
-    share = np.minimum(pressed_shares(assembly, forces), 1.0)
-    nearer = forces[:, :2] <= forces[:, 1::-1]
-    tangents = _Tangents.at(share, (share > options.pressed)[:, None] & nearer)
+    every = np.isfinite(assembly.crushing)[:, None] & np.ones(2, dtype=bool)
+    tangents = _first_tangents(assembly, options)
+    rigid = replace(assembly, crushing=np.full(assembly.n_interfaces, np.inf))
+    answer = not_found_yet = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
-        wall = in_series(replace(assembly, crushing=np.full(m, np.inf)), tangents.limits(assembly))
-        answer = solve(wall)
-        if answer.finding is Finding.UNBOUNDED:
-            tangents = tangents.with_more(_Tangents.at(np.ones(m), every), options.apart)
+        limits = tangents.limits(assembly)
+        wall = in_series(rigid, limits)
+        of_wall = solve(wall)
+        answer = without_limits(of_wall, assembly, limits)
+        if answer.finding is Finding.UNBOUNDED and growing_forces(assembly) is None:
+            tangents = tangents.with_more(_Tangents.at(np.ones(assembly.n_interfaces), every), options.apart)
             continue
-        if answer.forces is None or answer.mechanism is None or answer.multiplier is None:
+        ends = ends_at(assembly, answer, "within tangents of its stress blocks" if len(limits.joint) else "")
+        if ends is not None:
+            if answer.finding in (Finding.UNBOUNDED, Finding.FALLS) or answer.status is Status.REFUSED:
+                return ends
+            not_found_yet = ends
             break
-        forces = answer.forces[:m]
-        state = exact_state(assembly, forces, tangents.rows_moved(wall, answer))
-        if state is not None and state.multiplier > 0.0:
-            found.append(_with_state(answer, state, rounds))
-            size = max(assembly.load_unit, state.multiplier)
-            if abs(answer.multiplier - state.multiplier) <= options.agrees * size:
-                break
-        share = np.minimum(pressed_shares(assembly, forces), 1.0)
-        outside = _slacks(assembly, forces) < options.broken * assembly.force_scale / assembly.n_free
+        assert answer.forces is not None
+        if answer.finding is Finding.COLLAPSES:
+            state = exact_state(assembly, answer.forces, tangents.rows_moved(wall, of_wall))
+            if state is not None and state.multiplier > 0.0:
+                found.append(_with_state(answer, state, rounds))
+                assert answer.multiplier is not None
+                size = max(assembly.load_unit, state.multiplier)
+                if abs(answer.multiplier - state.multiplier) <= options.agrees * size:
+                    break
+        outside = _slacks(assembly, answer.forces) < options.broken * assembly.force_scale / assembly.n_free
         if not outside.any():
             break
+        share = np.minimum(pressed_shares(assembly, answer.forces), 1.0)
+        if answer.mechanism is not None:
+            hinge = np.maximum(_hinge_shares(assembly, answer.mechanism), options.pressed)
+            tangents = tangents.with_more(_Tangents.at(hinge, outside & every), options.apart)
         tangents = tangents.with_more(_Tangents.at(share, outside & every), options.apart)
     if found:
         return _least(found)
-    return _state_of_greatest(assembly, greatest) or not_found(
+    if answer.finding is Finding.STANDS:
+        return answer
+    ended = f" ({not_found_yet.sentence})" if not_found_yet.sentence else ""
+    return not_found(
         assembly,
-        not_converged(""),
+        answer,
         f"no collapse state of the joints that crush is known; {rounds} rounds of a search within tangents of their "
-        f"stress blocks led to none, and statics bears no more than {greatest.upper:.7g}",
+        f"stress blocks led to none{ended}",
     )
+
+
+def _first_tangents(assembly: Assembly, options: TangentTolerances) -> _Tangents:
+    """Tangents at the forces of the greatest multiplier of statics, each at the end that these are nearer to."""
+    forces = None
+    if assembly.has_live_load:
+        forces = greatest_by_chords(assembly, assembly.dead, assembly.live).forces
+    if forces is None:
+        forces = np.zeros((assembly.n_interfaces, 3))
+    share = np.minimum(pressed_shares(assembly, forces), 1.0)
+    return _Tangents.at(share, (share > options.pressed)[:, None] & (forces[:, :2] <= forces[:, 1::-1]))
+
+
+def _hinge_shares(assembly: Assembly, mechanism: FloatArray) -> FloatArray:
+    """(m,) shares of the joints beyond the points about which they turn in a mechanism (n, 3), 0 to 1; 0 at rest."""
+    strains = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3)
+    opening = assembly.law.rates(strains)[:, :2]
+    closes, turn = np.maximum(-opening.min(axis=1), 0.0), np.ptp(opening, axis=1)
+    return np.asarray(np.minimum(closes / np.where(closes < turn, turn, np.maximum(closes, 1e-300)), 1.0))
 
 
 def _slacks(assembly: Assembly, forces: FloatArray) -> FloatArray:
@@ -182,28 +209,22 @@ def _least(found: list[Answer]) -> Answer:
 
 
 def _with_state(answer: Answer, state: PressedState, rounds: int) -> Answer:
-    """The answer for the wall with an exact state of its stress blocks."""
-    sentence = (
-        f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state of their "
-        f"stress blocks, found in round {rounds} of a search within tangents of them."
+    """The answer with an exact state of the stress blocks, and without what is true of the wall within tangents."""
+    details = {name: value for name, value in answer.details.items() if name not in _OF_TANGENTS}
+    return replace(
+        answer,
+        sentence=f"The wall collapses at {state.multiplier:.7g} times the live load, with joints that crush: a state "
+        f"of their stress blocks, found in round {rounds} of a search within tangents of them.",
+        multiplier=state.multiplier,
+        forces=state.forces,
+        forces_multiplier=state.multiplier,
+        mechanism=state.mechanism,
+        details=details | {"searches": rounds},
     )
-    exact = at_state(answer, state)
-    return replace(exact, sentence=sentence, details=exact.details | {"searches": rounds})
 
 
-def _state_of_greatest(assembly: Assembly, greatest: BlockLimit) -> Answer | None:
-    """The state of the greatest multiplier of statics, if that is one without dilatancy; None if not.
-
-    Its mechanism is one of any flow where nothing slips in it, as under a load that crushes what is below.
-    """
-    if greatest.forces is None or greatest.mechanism is None:
-        return None
-    state = exact_state(assembly, greatest.forces, rows_at_limits(assembly, greatest.forces, greatest.mechanism))
-    if state is None or not state.multiplier > 0.0:
-        return None
-    sentence = (
-        f"The wall collapses at {state.multiplier:.7g} times the live load, the greatest multiplier of statics, with "
-        "joints that crush: its mechanism slips nowhere where it would lift more than the joints do."
-    )
-    answer = Answer(Status.OK, Finding.COLLAPSES, sentence, flow="non-associated", iterations=greatest.rounds)
-    return at_state(answer, state)
+_OF_TANGENTS = (
+    *("proved_least", "lower_bound", "proof_nodes", "certificate", "certified_bound", "rational_confirmation"),
+    *("associated", "starts_at_least_known", "starts_agree", "residuals", "work_multiplier", "plateau"),
+)
+"""Details of answers that are true of the wall within tangents alone."""

@@ -1,0 +1,66 @@
+"""What is claimed of walls whose joints crush, from answers for walls in their place: set in, or within tangents."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.method import Answer, Finding, Status
+from methods.numerics.claims import growing_forces, no_answer
+from methods.numerics.stress_blocks import greatest_by_chords
+
+
+def falling_mechanism(assembly: Assembly) -> FloatArray | None:
+    """A dilatant mechanism (n, 3) on which the dead load does more work than the joints take; None if none is found."""
+    own = greatest_by_chords(assembly, np.zeros_like(assembly.dead), assembly.dead, 2.0)
+    return own.mechanism if own.upper < 1.0 else None
+
+
+def ends_at(assembly: Assembly, answer: Answer, stands_for: str) -> Answer | None:
+    """The answer where that for a wall in its place leaves nothing to follow; None where it has forces.
+
+    A wall that falls although nothing crushes falls. One that falls in its place need not.
+
+    Args:
+        assembly: the wall; answer: for the one in its place; stands_for: what that one is, or "" for the wall with
+            joints that do not crush.
+    """
+    if answer.finding is Finding.FALLS:
+        proof = falling_mechanism(assembly)
+        if proof is not None:
+            return falls(answer, proof)
+        sentence = f"the wall falls {stands_for}, which does not show that it falls: statics finds no proof"
+        return no_answer(answer, sentence) if stands_for else answer
+    if answer.finding is Finding.UNBOUNDED:
+        return _without_end(assembly, answer)
+    goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow != "associated"
+    if goes_on or answer.status is Status.REFUSED:
+        return None if goes_on else answer
+    return no_answer(answer, f"the wall {stands_for} has no answer to go on from: {answer.sentence}")
+
+
+def _without_end(assembly: Assembly, answer: Answer) -> Answer:
+    """The answer where the live load grows for ever in joints that do not crush; else nothing is known."""
+    if growing_forces(assembly) is not None:
+        return replace(answer, forces=None, forces_multiplier=None)
+    return no_answer(
+        answer,
+        "the live load presses joints the more the greater it is, until they crush evenly, which is not followed; "
+        "la-associated gives the upper bound",
+    )
+
+
+def falls(answer: Answer, mechanism: FloatArray) -> Answer:
+    """The answer where statics shows that the dead load is not borne, by a dilatant mechanism (n, 3)."""
+    sentence = "the wall falls under its dead load: no equilibrium within the stress blocks exists, whatever the flow"
+    return replace(
+        no_answer(answer, sentence), status=Status.OK, finding=Finding.FALLS, mechanism=mechanism, flow="associated"
+    )
+
+
+def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
+    proof = falling_mechanism(assembly)
+    return no_answer(answer, sentence) if proof is None else falls(answer, proof)
