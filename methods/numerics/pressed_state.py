@@ -32,9 +32,9 @@ class StateTolerances:
             the slack beside the greatest force up to which a limit is reached, where those of chords are good to 1e-10.
         settled: change of a pressed share at which the tangents are those at the forces: the error is its square.
         rounds: of tangents, at most. Each squares the change.
-        violation: of a limit, relative to the terms beside it, that forces may have: half of what the judge
-            tolerates. Where more limits meet in one point than the mechanism has joints, as in a symmetric arch,
-            vertices keep them to 1e-10 only.
+        violation: of a limit, relative to the terms beside it, that forces and mechanism may have: half of what the
+            judge tolerates. Where more limits meet in one point than the mechanism has joints, as in a symmetric arch,
+            vertices keep them to 1e-10 only, and so do mechanisms in which joints open that press nothing.
     """
 
     moving: float = 1e-7
@@ -59,25 +59,24 @@ def moving_rows(wall: Assembly, mechanism: FloatArray, options: StateTolerances 
     return np.asarray(rates > options.moving * abs(strains).max())
 
 
-def rows_at_limits(
-    assembly: Assembly, forces: FloatArray, mechanism: FloatArray, options: StateTolerances = StateTolerances()
-) -> BoolArray:
-    """(m, 4) limits of the stress blocks that forces (m, 3) reach, of the joints that a mechanism (n, 3) moves."""
-    rows, constant, _ = _tangents(assembly, pressed_shares(assembly, forces))
-    slack = np.einsum("pki,pi->pk", rows, forces) + constant
-    rates = abs(assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3).max(axis=1)
-    moves = rates > options.moving * rates.max(initial=0.0)
-    return np.asarray((slack <= options.moving * abs(forces).max(initial=0.0)) & moves[:, None])
-
-
 def exact_state(
-    assembly: Assembly, forces: FloatArray, moving: BoolArray, options: StateTolerances = StateTolerances()
+    assembly: Assembly,
+    forces: FloatArray,
+    moving: BoolArray,
+    empty: BoolArray | None = None,
+    options: StateTolerances = StateTolerances(),
 ) -> PressedState | None:
-    """The collapse state in which the rows `moving` (m, 4) move, with forces near these (m, 3); None without any."""
-    known = forces
+    """The collapse state in which the rows `moving` (m, 4) move, with forces near these (m, 3); None without any.
+
+    Args:
+        empty: (m,) joints of those that press nothing, since they turn about an end.
+    """
+    known, reached = forces, moving
+    if empty is not None:
+        reached = moving | (empty[:, None] & np.array([True, True, False, False]))
     for _ in range(options.rounds):
         share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, moving, forces, options)
+        found = _nearest_forces(assembly, share, reached, forces, options)
         if found is None:
             return None
         known, multiplier = found
@@ -85,7 +84,7 @@ def exact_state(
             break
     else:
         return None
-    mechanism = _mechanism(assembly, pressed_shares(assembly, known), moving)
+    mechanism = _mechanism(assembly, pressed_shares(assembly, known), moving, options)
     return None if mechanism is None else PressedState(multiplier, known, mechanism)
 
 
@@ -120,12 +119,16 @@ def held_forces(
 def _nearest_forces(
     assembly: Assembly,
     share: FloatArray,
-    moving: BoolArray,
+    reached: BoolArray,
     near: FloatArray,
     options: StateTolerances,
     multiplier: float | None = None,
 ) -> tuple[FloatArray, float] | None:
-    """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given."""
+    """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given.
+
+    Args:
+        reached: (m, 4) rows that are at their limits.
+    """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
     m, n = assembly.n_interfaces, assembly.n_free
@@ -144,7 +147,7 @@ def _nearest_forces(
         ]
     )
     slack, target = -constant.ravel() / unit, near.ravel() / unit
-    most = np.where(moving.ravel(), slack, INFINITY)
+    most = np.where(reached.ravel(), slack, INFINITY)
     at = (-INFINITY, INFINITY) if multiplier is None else (multiplier / assembly.load_unit,) * 2
     free, none, parts = np.full(3 * m, INFINITY), np.zeros(6 * m), np.full(6 * m, INFINITY)
     programme = Programme(
@@ -190,7 +193,7 @@ def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> 
     return mechanism, float(abs(value[3 * n : 3 * n + 4 * m] - target).max())
 
 
-def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> FloatArray | None:
+def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray, options: StateTolerances) -> FloatArray | None:
     """A mechanism (n, 3) of positive live work whose joints move along the rows `moving` (m, 4) alone; None if none."""
     from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -210,7 +213,7 @@ def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> Floa
     )
     status, _, _ = programme.run()
     vertex = programme.vertex() if status == "optimal" else None
-    if vertex is None or not vertex.feasible:
+    if vertex is None or not vertex.primal <= options.violation:
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (vertex.value[: 3 * n] * column).reshape(-1, 3)

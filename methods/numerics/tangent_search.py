@@ -149,8 +149,11 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
             not_found_yet = ends
             break
         assert answer.forces is not None
-        if answer.finding is Finding.COLLAPSES:
-            state = exact_state(assembly, answer.forces, tangents.rows_moved(wall, of_wall))
+        hinge = None if answer.mechanism is None else _hinge_shares(assembly, answer.mechanism)
+        if answer.finding is Finding.COLLAPSES and hinge is not None:
+            moving = tangents.rows_moved(wall, of_wall)
+            empty = every.any(axis=1) & moving[:, :2].any(axis=1) & (hinge <= options.pressed)
+            state = exact_state(assembly, answer.forces, moving, empty)
             if state is not None and state.multiplier > 0.0:
                 found.append(_with_state(answer, state, rounds))
                 assert answer.multiplier is not None
@@ -161,9 +164,9 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         if not outside.any():
             break
         share = np.minimum(pressed_shares(assembly, answer.forces), 1.0)
-        if answer.mechanism is not None:
-            hinge = np.maximum(_hinge_shares(assembly, answer.mechanism), options.pressed)
-            tangents = tangents.with_more(_Tangents.at(hinge, outside & every), options.apart)
+        if hinge is not None:
+            at_hinge = _Tangents.at(np.maximum(hinge, options.pressed), outside & every)
+            tangents = tangents.with_more(at_hinge, options.apart)
         tangents = tangents.with_more(_Tangents.at(share, outside & every), options.apart)
     if found:
         return _least(found)
