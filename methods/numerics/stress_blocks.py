@@ -33,16 +33,13 @@ class ChordTolerances:
         first: shares of F0 that both programmes begin with, besides 0 and 1.
         gap: of the two multipliers, relative to their size or to the load unit, at which they agree to rounding.
         exact: the same from which on vertices are computed to rounding instead of as HiGHS gives them.
-        settled: share of the gap before, above which a further round no longer helps, if the gap is below `stated`.
         new: distance of a further point from those there are, as a share of F0.
-        rounds: at most. Each round about squares the gap once points lie on both sides of the forces.
+        rounds: at most. Each round squares the gap, or quarters it where a hinge lies between two points.
     """
 
     first: tuple[float, ...] = (0.125, 0.25, 0.5)
     gap: float = 1e-10
     exact: float = 1e-6
-    stated: float = 1e-7
-    settled: float = 0.5
     new: float = 1e-13
     rounds: int = 40
 
@@ -87,7 +84,7 @@ def greatest_by_chords(
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by linear programmes with a known gap."""
     programme = _LineProgramme(assembly, dead, live, most, options)
     best, upper, motion = BlockLimit("unknown"), np.inf, None
-    size, gap = programme.per_unit, np.inf
+    size = programme.per_unit
     for rounds in range(1, options.rounds + 1):
         exact = upper - best.multiplier <= options.exact * size
         outer = programme.solve(*programme.tangents(), exact)
@@ -104,8 +101,7 @@ def greatest_by_chords(
         best = replace(best, mechanism=motion, upper=upper, rounds=rounds)
         at_most = best.forces is not None and best.multiplier >= most
         size = max(programme.per_unit, abs(upper) if upper < np.inf else 0.0)
-        before, gap = gap, upper - best.multiplier
-        if at_most or gap <= options.gap * size or options.settled * before < gap <= options.stated * size:
+        if at_most or upper - best.multiplier <= options.gap * size:
             break
     return best
 
@@ -188,7 +184,7 @@ class _LineProgramme:
         normal = np.column_stack([self._law.least_normal, np.full(m, -INFINITY)]).ravel()
         programme = Programme(
             sp.csc_matrix(sp.vstack([self._matrix, lines])),
-            np.append(np.zeros(3 * m), -COST * n),
+            np.append(np.zeros(3 * m), -COST),
             (np.append(normal, -INFINITY), np.append(np.full(3 * m, INFINITY), min(self._most, INFINITY))),
             (
                 np.concatenate([-self._dead, least_shear_slacks(self._law), least]),

@@ -196,8 +196,9 @@ def _hinge_shares(assembly: Assembly, mechanism: FloatArray) -> FloatArray:
     """(m,) shares of the joints beyond the points about which they turn in a mechanism (n, 3), 0 to 1; 0 at rest."""
     strains = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3)
     opening = assembly.law.rates(strains)[:, :2]
-    closes, turn = np.maximum(-opening.min(axis=1), 0.0), np.ptp(opening, axis=1)
-    return np.asarray(np.minimum(closes / np.where(closes < turn, turn, np.maximum(closes, 1e-300)), 1.0))
+    closing = np.maximum(-opening.min(axis=1), 0.0)
+    turn = np.maximum(np.ptp(opening, axis=1), closing)
+    return np.asarray(closing / np.where(turn > 0.0, turn, 1.0))
 
 
 def _slacks(assembly: Assembly, forces: FloatArray) -> FloatArray:
