@@ -14,13 +14,13 @@ from typing import Protocol
 import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU
 
 from harness.model.assembly import FloatArray, IntArray
+from methods.numerics.band_lu import BandLU
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
-from methods.numerics.failures import SingularMatrix, sparse_lu
+from methods.numerics.failures import SingularMatrix
 from methods.numerics.vectors import largest
 from methods.springs.model.point_loops import add_tangent
 from methods.springs.model.wall_model import WallModel
@@ -181,7 +181,7 @@ class SparseFactor:
         self._lu = BlockFactor(pattern)
         self.careful = False
         self.is_regularised = False
-        self._exchanged: SuperLU | None = None
+        self._exchanged: BandLU | None = None
         self._foreseen: dict[Change, FloatArray] = {}
         self._y = np.empty((self.capacity, n))
         self._coupling = np.zeros((self.capacity, self.capacity))
@@ -227,22 +227,11 @@ class SparseFactor:
             ).all()
         )
 
-    def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, bordered: Sequence[int]) -> SuperLU:
-        options = {"SymmetricMode": True}
+    def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, bordered: Sequence[int]) -> BandLU:
         for border in bordered:
             matrix[border, border] += 1.0
-        try:
-            lu = sparse_lu(
-                matrix,
-                permc_spec="NATURAL",
-                diag_pivot_thresh=self.model.options.factors.threshold,
-                relax=1,
-                panel_size=1,
-                options=options,
-            )
-        except SingularMatrix as error:
-            raise SingularTangent(str(error)) from error
-        if not self._stiff(lu.U.diagonal(), added):
+        lu = BandLU(matrix)
+        if not lu.pivots.all() or not self._stiff(lu.pivots, added):
             raise SingularTangent("the tangent is singular to rounding in these states")
         return lu
 

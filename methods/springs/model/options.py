@@ -47,13 +47,11 @@ class FactorTuning:
     Attributes:
         dense: unknowns up to which the dense inverse is faster than the sparse product form.
         growth: entries of L above this cost too many digits: rows are exchanged then.
-        threshold: share of the largest entry of its column from which a pivot on the diagonal is kept even so.
         updates: rank-one changes of one factor at most, for which the product form has room.
     """
 
     dense: int = 70
     growth: float = 1e5
-    threshold: float = 1e-3
     updates: int = 64
 
 
