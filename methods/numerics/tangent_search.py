@@ -106,15 +106,15 @@ class _Tangents:
         tension = assembly.constant[joint, 0] + assembly.constant[joint, 1]
         unit = assembly.force_scale / assembly.n_free
         constant = np.empty((k, 4))
-        constant[:, 2:] = assembly.constant[joint, 2:] + unit
-        constant[np.arange(k), 1 - self.end] = tension * (0.5 + self.share) + unit
         full = assembly.crushing[joint] + tension
+        constant[:, 2:] = assembly.constant[joint, 2:] + (assembly.friction[joint] * full + unit)[:, None]
+        constant[np.arange(k), 1 - self.end] = tension * (0.5 + self.share) + unit
         constant[np.arange(k), self.end] = tension * (0.5 - self.share) + 0.5 * self.share**2 * full
         return FurtherLimits(
             joint,
             np.where(first, about - along, about),
             np.where(first, about, about - along),
-            assembly.friction[joint],
+            np.zeros(k),
             np.zeros(k),
             constant,
         )
