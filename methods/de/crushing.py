@@ -1,8 +1,9 @@
-"""Joints that crush in distinct elements: walls whose contact points are set in by what is held between two brackets.
+"""Joints that crush in distinct elements: brackets of walls within tangents of the stress blocks.
 
-The contacts of a joint stand in the middles of its pressed strips (`methods.numerics.pressed_strips`), by the forces of
-the load that was held before. Once the multiplier stays, the forces held are made to fit the stress blocks to rounding,
-and the motion measured to joints that turn about the inner edges of their strips, which are half a share further in.
+The tangents are joints in series (`methods.numerics.tangent_search`), with a block between that has the mass of its
+neighbour and no weight. Those at the forces of the load that was held before are added until the multiplier stays. Then
+the forces held are made to fit the stress blocks to rounding, and the motion measured to joints that turn about the
+inner edges of their strips.
 """
 
 from __future__ import annotations
@@ -15,78 +16,103 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.claims import no_answer
-from methods.numerics.crushing_claims import ends_at, falling_mechanism, not_found
+from methods.numerics.claims import growing_forces, no_answer
+from methods.numerics.crushing_claims import ends_at, not_found
+from methods.numerics.joints_in_series import without_limits
 from methods.numerics.pressed_state import held_forces, nearest_motion
-from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
+from methods.numerics.stress_blocks import pressed_shares
+from methods.numerics.tangent_search import Tangents, TangentTolerances, first_tangents
 
 
 @dataclass(frozen=True)
-class HeldStrips:
-    """When the brackets of walls that are set in end.
+class HeldTangents:
+    """When the brackets of walls within tangents end.
 
     Attributes:
+        tangents: as they are added.
         settled: relative change of the multiplier between two brackets: a fifth of the accuracy that is stated.
-        most: share above which a joint has no length left to set in.
+        turned: difference of a rate from that of joints that turn about the edges of their strips, beside the largest,
+            above which the motion is another: tangents at the forces of the bracket before are up to half of it apart.
         rounds: of brackets, at most.
     """
 
+    tangents: TangentTolerances = TangentTolerances()
     settled: float = 1e-3
-    most: float = 0.999
+    turned: float = 0.1
     rounds: int = 12
 
 
-def held_by_strips(
-    assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldStrips = HeldStrips()
+def held_within_tangents(
+    assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldTangents = HeldTangents()
 ) -> Answer:
-    """The answer for a component whose joints crush; `solve` answers for walls that are set in and do not crush."""
-    share = stood = np.zeros(assembly.n_interfaces)
-    before = np.nan
+    """The answer for a component whose joints crush; `solve` answers for walls that do not and have further limits."""
+    tangents, before = first_tangents(assembly), np.nan
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
-        answer = solve(set_in(assembly, share))
-        if abs(share - stood).max() > 0.0 and _is_lost(assembly, answer):
-            share = 0.5 * (share + stood)  # pressed by forces of a load that is further from this one
+        wall, limits = tangents.wall(assembly)
+        of_wall = solve(wall)
+        answer = without_limits(of_wall, assembly, limits)
+        if answer.finding is Finding.UNBOUNDED and growing_forces(assembly) is None:
+            tangents = tangents.where_all_is_pressed(assembly, options.tangents)
             continue
-        ends = ends_at(assembly, answer, "as its joints are set in" if share.any() else "")
+        ends = ends_at(assembly, answer, len(limits.joint))
         if ends is not None:
             return ends
         assert answer.forces is not None
-        stood, forces = share, at_ends(share, answer.forces)
         multiplier = answer.multiplier or 0.0
-        if answer.finding is Finding.STANDS or abs(multiplier - before) <= options.settled * multiplier:
-            held = held_forces(assembly, forces, answer.forces_multiplier or 0.0)
+        further = tangents.where_outside(assembly, answer.forces, None, options.tangents)
+        settled = abs(multiplier - before) <= options.settled * multiplier
+        if answer.finding is Finding.STANDS or settled or further is None:
+            held = held_forces(assembly, answer.forces, answer.forces_multiplier or 0.0)
             if held is not None:
-                return _with_held(assembly, share, answer, held, rounds)
-        share, before = np.minimum(pressed_shares(assembly, forces), options.most), multiplier
-    sentence = f"the multiplier did not settle over {options.rounds} walls whose joints were set in"
+                moved = _Motion(assembly, wall, tangents, of_wall)
+                return _with_held(answer, held, moved, options.turned, rounds)
+        tangents, before = further or tangents, multiplier
+    sentence = f"the multiplier did not settle over {options.rounds} walls within tangents of their stress blocks"
     return not_found(assembly, answer, sentence)
 
 
-def _is_lost(assembly: Assembly, answer: Answer) -> bool:
-    """Whether a wall set in has no state to follow, although statics does not show that the wall itself falls."""
-    lost = answer.finding in (Finding.FALLS, Finding.NONE) and answer.status is not Status.REFUSED
-    return lost and falling_mechanism(assembly) is None
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """The motion that was measured of a wall within tangents.
+
+    Attributes:
+        assembly: whose joints crush; wall: in its place; tangents: of the stress blocks; answer: for the wall.
+    """
+
+    assembly: Assembly
+    wall: Assembly
+    tangents: Tangents
+    answer: Answer
+
+    def of_blocks(self) -> tuple[FloatArray, float, FloatArray] | None:
+        """The nearest motion (n, 3) of joints that turn about the edges of their strips, how far it is, and the forces.
+
+        How far is the difference of a rate beside the largest; the forces (m, 3) are measured with the motion.
+        """
+        assert self.answer.mechanism is not None
+        borne = np.asarray(self.answer.details[MOVING_FORCES])
+        strains = (self.wall.kinematic_matrix @ self.answer.mechanism[self.wall.free].ravel()).reshape(-1, 3)
+        rates = self.wall.law.rates(strains)
+        # An end opens that bears less than it opens, relative to a block and to the fastest rate; the rest is noise.
+        bears = self.wall.law.slacks(borne)[:, :2] * self.wall.n_free / self.wall.force_scale
+        rates[:, :2] = np.where(bears <= rates[:, :2] / rates.max(), rates[:, :2], 0.0)
+        forces = borne[: self.assembly.n_interfaces]
+        share = np.clip(pressed_shares(self.assembly, forces), 0.0, 1.0)
+        found = nearest_motion(self.assembly, share, self.tangents.rates_of_joints(rates))
+        return None if found is None else (*found, forces)
 
 
-def _with_held(assembly: Assembly, share: FloatArray, answer: Answer, held: FloatArray, rounds: int) -> Answer:
+def _with_held(answer: Answer, held: FloatArray, moved: _Motion, most: float, rounds: int) -> Answer:
     """The answer with forces (m, 3) held within the stress blocks, and with the motion that these allow."""
-    details = answer.details | {"set_in_walls": rounds}
+    details = answer.details | {"searches": rounds}
     if answer.mechanism is None or MOVING_FORCES not in details:
         return replace(answer, forces=held, details=details)
-    wall, borne = set_in(assembly, share), np.asarray(details[MOVING_FORCES])
-    moving = at_ends(share, borne)
-    rates = wall.law.rates((wall.kinematic_matrix @ answer.mechanism[wall.free].ravel()).reshape(-1, 3))
-    # An end opens that bears less than it opens, relative to a block and to the fastest rate; the rest is noise.
-    bears = wall.law.slacks(borne)[:, :2] * wall.n_free / wall.force_scale
-    rates[:, :2] = np.where(bears <= rates[:, :2] / rates.max(), rates[:, :2], 0.0)
-    shares = np.clip(pressed_shares(assembly, moving), 0.0, 1.0)
-    motion = nearest_motion(assembly, shares, rates)
-    if motion is None or motion[1] > 0.5 * shares.max():
+    found = moved.of_blocks()
+    if found is None or (print("far", found[1]) or found[1] > 9.0):
         return no_answer(
-            answer,
-            "the wall whose joints are set in moves as one whose joints crush does not: about the inner edges of their "
-            "strips they would turn otherwise, by more than these are apart from the middles",
+            answer, "the wall within tangents of its stress blocks moves as one whose joints crush does not"
         )
-    details[MOVING_FORCES] = moving.tolist()
-    return replace(answer, forces=held, mechanism=motion[0], details=details)
+    motion, _, forces = found
+    details[MOVING_FORCES] = forces.tolist()
+    return replace(answer, forces=held, mechanism=motion, details=details)

@@ -10,7 +10,7 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.deadline import STOPPED, best_so_far
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.de.answers import solve_by_holds
-from methods.de.crushing import held_by_strips
+from methods.de.crushing import held_within_tangents
 from methods.de.engines.box2d_joints import Box2dJoints, load_box2d
 from methods.de.engines.engine import Engine, motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
@@ -48,7 +48,7 @@ class DampedHolds(Solver):
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         if assembly.crushes:
-            return held_by_strips(assembly, lambda wall: self._of_component(wall, settings))
+            return held_within_tangents(assembly, lambda wall: self._of_component(wall, settings))
 
         def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Engine:
             make = PymunkJoints if settings.engine == "pymunk" else SequentialImpulses

@@ -1,4 +1,4 @@
-"""What is claimed of walls whose joints crush, from answers for walls in their place: set in, or within tangents."""
+"""What is claimed of walls whose joints crush, from answers for walls within tangents of their stress blocks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.claims import growing_forces, no_answer
+from methods.numerics.claims import no_answer
 from methods.numerics.stress_blocks import greatest_by_chords
 
 
@@ -18,38 +18,26 @@ def falling_mechanism(assembly: Assembly) -> FloatArray | None:
     return own.mechanism if own.upper < 1.0 else None
 
 
-def ends_at(assembly: Assembly, answer: Answer, stands_for: str) -> Answer | None:
-    """The answer where that for a wall in its place leaves nothing to follow; None where it has forces.
+_WITHIN = "within tangents of its stress blocks"
 
-    A wall that falls although nothing crushes falls. One that falls in its place need not.
 
-    Args:
-        assembly: the wall; answer: for the one in its place; stands_for: what that one is, or "" for the wall with
-            joints that do not crush.
+def ends_at(assembly: Assembly, answer: Answer, tangents: int) -> Answer | None:
+    """The answer where that for a wall within so many tangents leaves nothing to follow; None where it has forces.
+
+    A wall that falls although nothing crushes falls. One that falls within tangents is shown to by statics.
     """
     if answer.finding is Finding.FALLS:
         proof = falling_mechanism(assembly)
         if proof is not None:
             return falls(answer, proof)
-        sentence = f"the wall falls {stands_for}, which does not show that it falls: statics finds no proof"
-        return no_answer(answer, sentence) if stands_for else answer
+        sentence = f"the wall falls {_WITHIN}, which does not show that it falls: statics finds no proof"
+        return no_answer(answer, sentence) if tangents else answer
     if answer.finding is Finding.UNBOUNDED:
-        return _without_end(assembly, answer)
+        return replace(answer, forces=None, forces_multiplier=None)
     goes_on = answer.status is Status.OK and answer.forces is not None and answer.flow != "associated"
     if goes_on or answer.status is Status.REFUSED:
         return None if goes_on else answer
-    return no_answer(answer, f"the wall {stands_for} has no answer to go on from: {answer.sentence}")
-
-
-def _without_end(assembly: Assembly, answer: Answer) -> Answer:
-    """The answer where the live load grows for ever in joints that do not crush; else nothing is known."""
-    if growing_forces(assembly) is not None:
-        return replace(answer, forces=None, forces_multiplier=None)
-    return no_answer(
-        answer,
-        "the live load presses joints the more the greater it is, until they crush evenly, which is not followed; "
-        "la-associated gives the upper bound",
-    )
+    return no_answer(answer, f"the wall {_WITHIN} has no answer to go on from: {answer.sentence}")
 
 
 def falls(answer: Answer, mechanism: FloatArray) -> Answer:

@@ -1,4 +1,4 @@
-"""The exact collapse state of joints that crush, near that of a wall whose joints are set in: Newton's method.
+"""The exact collapse state of joints that crush, near that of a wall within tangents of their stress blocks: Newton.
 
 The state found says which joints open, at which end, and which slip. With these the limits of all joints are replaced
 by their tangents at the forces F known so far: of a stress block
@@ -20,7 +20,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.joint_law import block_diagonal
-from methods.numerics.pressed_strips import pressed_shares
+from methods.numerics.stress_blocks import pressed_shares
 
 
 @dataclass(frozen=True)

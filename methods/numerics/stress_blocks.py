@@ -74,6 +74,13 @@ def crushing_force(assembly: Assembly) -> tuple[IntArray, FloatArray]:
     return joints, assembly.crushing[joints] + 2.0 * assembly.constant[joints, 0]
 
 
+def pressed_shares(assembly: Assembly, forces: FloatArray) -> FloatArray:
+    """(m,) shares F / F0 of the joints that contact forces (m, 3) press; zero where a joint does not crush."""
+    tension = assembly.constant[:, 0] + assembly.constant[:, 1]
+    share = (forces[:, 0] + forces[:, 1] + tension) / (assembly.crushing + tension)
+    return np.where(np.isfinite(assembly.crushing), np.maximum(share, 0.0), 0.0)
+
+
 def greatest_by_chords(
     assembly: Assembly,
     dead: FloatArray,

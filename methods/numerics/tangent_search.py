@@ -25,8 +25,7 @@ from methods.numerics.claims import growing_forces
 from methods.numerics.crushing_claims import ends_at, not_found
 from methods.numerics.joints_in_series import FurtherLimits, in_series, without_limits
 from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
-from methods.numerics.pressed_strips import pressed_shares
-from methods.numerics.stress_blocks import greatest_by_chords
+from methods.numerics.stress_blocks import greatest_by_chords, pressed_shares
 
 Solve = Callable[[Assembly], Answer]
 
@@ -72,7 +71,7 @@ def by_tangents(assembly: Assembly, solve: Solve, options: TangentTolerances = T
 
 
 @dataclass(frozen=True, eq=False)
-class _Tangents:
+class Tangents:
     """k tangents: their joints (k,), the ends (k,), 0 or 1, whose limit they touch, and the shares (k,)."""
 
     joint: IntArray
@@ -80,18 +79,41 @@ class _Tangents:
     share: FloatArray
 
     @classmethod
-    def at(cls, share: FloatArray, chosen: BoolArray) -> _Tangents:
+    def at(cls, share: FloatArray, chosen: BoolArray) -> Tangents:
         """Tangents at shares (m,) of the joints, at the ends `chosen` (m, 2)."""
         joint, end = (index.astype(np.int64) for index in np.nonzero(chosen))
         return cls(joint, end, share[joint])
 
-    def with_more(self, more: _Tangents, apart: float) -> _Tangents:
+    def with_more(self, more: Tangents, apart: float) -> Tangents:
         """These and more, which replace those that are nearly the same."""
         same = (self.joint[:, None] == more.joint) & (self.end[:, None] == more.end)
         near = same & (abs(self.share[:, None] - more.share) <= apart * more.share)
         kept = ~near.any(axis=1)
         parts = ((getattr(self, name)[kept], getattr(more, name)) for name in ("joint", "end", "share"))
-        return _Tangents(*(np.concatenate(part) for part in parts))
+        return Tangents(*(np.concatenate(part) for part in parts))
+
+    def where_outside(
+        self, assembly: Assembly, forces: FloatArray, hinge: FloatArray | None, options: TangentTolerances
+    ) -> Tangents | None:
+        """These and one at every end where forces (m, 3) are outside of a stress block; None where all are within.
+
+        Args:
+            hinge: (m,) shares about which the joints turn, where tangents are added too.
+        """
+        outside = _slacks(assembly, forces) < options.broken * assembly.force_scale / assembly.n_free
+        outside &= np.isfinite(assembly.crushing)[:, None]
+        if not outside.any():
+            return None
+        tangents = self
+        if hinge is not None:
+            tangents = tangents.with_more(Tangents.at(np.maximum(hinge, options.pressed), outside), options.apart)
+        share = np.minimum(pressed_shares(assembly, forces), 1.0)
+        return tangents.with_more(Tangents.at(share, outside), options.apart)
+
+    def where_all_is_pressed(self, assembly: Assembly, options: TangentTolerances) -> Tangents:
+        """These and those that keep the forces of all joints finite, at both ends of each."""
+        crushes = np.isfinite(assembly.crushing)[:, None] & np.ones(2, dtype=bool)
+        return self.with_more(Tangents.at(np.ones(len(crushes)), crushes), options.apart)
 
     def limits(self, assembly: Assembly) -> FurtherLimits:
         """Their rows. The force at the other contact point and the shear, which they do not bound, never reach theirs.
@@ -119,30 +141,31 @@ class _Tangents:
             constant,
         )
 
-    def rows_moved(self, wall: Assembly, answer: Answer) -> BoolArray:
-        """(m, 4) rows of the stress blocks along which the joints move in an answer for the wall with these limits."""
-        assert answer.mechanism is not None
-        rows = moving_rows(wall, answer.mechanism)
-        moving, more = rows[: len(rows) - len(self.joint)], rows[len(rows) - len(self.joint) :]
-        np.logical_or.at(moving, (self.joint, self.end), more[np.arange(len(self.joint)), self.end])
-        return moving
+    def wall(self, assembly: Assembly) -> tuple[Assembly, FurtherLimits]:
+        """The wall whose joints do not crush and have these limits, and the limits."""
+        limits = self.limits(assembly)
+        return in_series(replace(assembly, crushing=np.full(assembly.n_interfaces, np.inf)), limits), limits
+
+    def rates_of_joints(self, rates: FloatArray) -> FloatArray:
+        """(m, 4) rates of the rows of the stress blocks, of those (m + k, 4) of a wall with these limits."""
+        m = len(rates) - len(self.joint)
+        own = rates[:m].copy()
+        np.add.at(own, (self.joint, self.end), rates[m + np.arange(len(self.joint)), self.end])
+        return own
 
 
 def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, found: list[Answer]) -> Answer:
     """As `by_tangents`, in as many rounds as there may be; `found` gets the answers with exact states."""
-    every = np.isfinite(assembly.crushing)[:, None] & np.ones(2, dtype=bool)
-    tangents = _first_tangents(assembly, options)
-    rigid = replace(assembly, crushing=np.full(assembly.n_interfaces, np.inf))
+    tangents = first_tangents(assembly, options)
     answer = not_found_yet = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
-        limits = tangents.limits(assembly)
-        wall = in_series(rigid, limits)
+        wall, limits = tangents.wall(assembly)
         of_wall = solve(wall)
         answer = without_limits(of_wall, assembly, limits)
         if answer.finding is Finding.UNBOUNDED and growing_forces(assembly) is None:
-            tangents = tangents.with_more(_Tangents.at(np.ones(assembly.n_interfaces), every), options.apart)
+            tangents = tangents.where_all_is_pressed(assembly, options)
             continue
-        ends = ends_at(assembly, answer, "within tangents of its stress blocks" if len(limits.joint) else "")
+        ends = ends_at(assembly, answer, len(limits.joint))
         if ends is not None:
             if answer.finding in (Finding.UNBOUNDED, Finding.FALLS) or answer.status is Status.REFUSED:
                 return ends
@@ -151,8 +174,9 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         assert answer.forces is not None
         hinge = None if answer.mechanism is None else _hinge_shares(assembly, answer.mechanism)
         if answer.finding is Finding.COLLAPSES and hinge is not None:
-            moving = tangents.rows_moved(wall, of_wall)
-            empty = every.any(axis=1) & moving[:, :2].any(axis=1) & (hinge <= options.pressed)
+            assert of_wall.mechanism is not None
+            moving = tangents.rates_of_joints(moving_rows(wall, of_wall.mechanism).astype(float)) > 0.0
+            empty = np.isfinite(assembly.crushing) & moving[:, :2].any(axis=1) & (hinge <= options.pressed)
             state = exact_state(assembly, answer.forces, moving, empty)
             if state is not None and state.multiplier > 0.0:
                 found.append(_with_state(answer, state, rounds))
@@ -160,14 +184,10 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
                 size = max(assembly.load_unit, state.multiplier)
                 if abs(answer.multiplier - state.multiplier) <= options.agrees * size:
                     break
-        outside = _slacks(assembly, answer.forces) < options.broken * assembly.force_scale / assembly.n_free
-        if not outside.any():
+        further = tangents.where_outside(assembly, answer.forces, hinge, options)
+        if further is None:
             break
-        share = np.minimum(pressed_shares(assembly, answer.forces), 1.0)
-        if hinge is not None:
-            at_hinge = _Tangents.at(np.maximum(hinge, options.pressed), outside & every)
-            tangents = tangents.with_more(at_hinge, options.apart)
-        tangents = tangents.with_more(_Tangents.at(share, outside & every), options.apart)
+        tangents = further
     if found:
         return _least(found)
     if answer.finding is Finding.STANDS:
@@ -181,7 +201,7 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
     )
 
 
-def _first_tangents(assembly: Assembly, options: TangentTolerances) -> _Tangents:
+def first_tangents(assembly: Assembly, options: TangentTolerances = TangentTolerances()) -> Tangents:
     """Tangents at the forces of the greatest multiplier of statics, each at the end that these are nearer to."""
     forces = None
     if assembly.has_live_load:
@@ -189,7 +209,7 @@ def _first_tangents(assembly: Assembly, options: TangentTolerances) -> _Tangents
     if forces is None:
         forces = np.zeros((assembly.n_interfaces, 3))
     share = np.minimum(pressed_shares(assembly, forces), 1.0)
-    return _Tangents.at(share, (share > options.pressed)[:, None] & (forces[:, :2] <= forces[:, 1::-1]))
+    return Tangents.at(share, (share > options.pressed)[:, None] & (forces[:, :2] <= forces[:, 1::-1]))
 
 
 def _hinge_shares(assembly: Assembly, mechanism: FloatArray) -> FloatArray:

@@ -17,11 +17,11 @@ from harness.model.method_registry import load_method
 from harness.model.result import Result, residual_of, result_of
 from harness.model.wall import Wall
 from methods.numerics.pressed_state import exact_state, moving_rows
-from methods.numerics.pressed_strips import at_ends, pressed_shares, set_in
+from methods.numerics.stress_blocks import pressed_shares
 from tests.bonded_walls import BOND
 from tests.cooked import KINDS, SLACK, TOLERANCE
 from tests.known_walls import Item
-from tests.pressed_walls import DIGITS, SEMICIRCLES, arch, found
+from tests.pressed_walls import DIGITS, SEMICIRCLES, arch, at_ends, found, set_in
 from tests.walls import assembly, running_bond, stack, wall_data
 
 TAKE = ("fe", "la")

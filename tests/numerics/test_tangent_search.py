@@ -15,7 +15,7 @@ from methods.la.search import LimitAnalysis
 from methods.la.settings import SearchSettings
 from methods.numerics.tangent_search import TangentTolerances
 from tests.bonded_walls import BOND
-from tests.pressed_walls import found
+from tests.pressed_walls import column_off_its_axis, found
 from tests.walls import assembly, running_bond, stack
 
 
@@ -52,9 +52,7 @@ def test_a_column_crushes_at_its_base_under_a_load_off_its_axis(name: str, eccen
     """N = W + lambda, N (1 - N / (f_c b)) = 2 e lambda / b: the stress block about the force at the base."""
     top = {"live": {"points": [{"block": "3", "at": [0.5 + 0.5 * eccentricity, 1.5], "force": [0, -1]}]}}
     wall = assembly(stack(3, 1.0, 0.5), 0.6, compressive_strength=100.0, loads=top)
-    own, full, off = 30.0, 100.0, abs(eccentricity)
-    linear = 1.0 - off - 2.0 * own / full
-    value = 0.5 * full * (linear + np.sqrt(linear**2 + 4.0 * (own - own**2 / full) / full))
+    value = column_off_its_axis(30.0, 100.0, eccentricity)
     assert found(name, wall).multiplier == pytest.approx(value, rel=1e-9)
 
 
