@@ -16,8 +16,10 @@ from harness.engine.verdict import compare, overall
 from harness.model.answer_check import AnswerFault, checked
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
-from harness.model.method import Answer
-from harness.model.result import Judgement, Result, result_of
+from harness.model.method import Answer, Status
+from harness.model.method_registry import load_method
+from harness.model.reading import validate
+from harness.model.result import Judgement, Result, bracket_is_wide, measured_width, result_of
 
 if TYPE_CHECKING:
     from harness.engine.store import Store
@@ -164,9 +166,14 @@ def executed(
 def judged(run: Run, result: Result, tolerance: float) -> Result:
     """A stored result with the judge's word, its comparisons and the doubts about its wall, made anew.
 
+    Args:
+        run: it is of; result: as it was stored.
+        tolerance: as it was stored, which counts where the method is not installed here.
+
     Raises:
-        InputError: its arrays are not of the size of its wall.
+        InputError: it is of another method, or its arrays are not of the size of its wall.
     """
+    result, tolerance = _of_its_method(run, result, tolerance)
     result = _fitting(run, result)
     return _held(run, result.model_copy(update={"judge": _word(run, run.case.assembly, result, tolerance)}))
 
@@ -180,8 +187,9 @@ def _found(run: Run, store: Store, summaries: Mapping[str, dict[str, Any]] | Non
             result = Result.model_validate(summaries[run.key], strict=False)
         except ValueError as error:
             raise store.damaged(f"the result of {run.method} on {run.case.id} in it", error) from None
-        if result.judge.code == judge_version():
-            return _held(run, result)
+        result, tolerance = _of_its_method(run, result, result.judge.tolerance)
+        if result.judge.code == judge_version() and result.judge.tolerance == tolerance:
+            return _held(run, result.model_copy(update=_widths(result)))
     found = store.get(run.key)
     if found is None:
         return None
@@ -204,6 +212,37 @@ def _held(run: Run, result: Result) -> Result:
     return result.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
 
 
+def _of_its_method(run: Run, result: Result, tolerance: float) -> tuple[Result, float]:
+    """A stored result with what its method says of itself, and the tolerance of that, whatever the store has.
+
+    As stored where the method is not installed here, and where a run came to no answer: its method may not have begun.
+
+    Raises:
+        InputError: it is of another method.
+    """
+    if result.method != run.method:
+        raise _not_usable(run, f"it is one of {result.method or 'no method'}")
+    if result.status is not Status.OK:
+        return result, tolerance
+    try:
+        method = load_method(run.method)
+        settings = validate(method.Settings, dict(run.settings), "settings").model_dump(mode="json")
+    except (KeyError, InputError):
+        return result, tolerance
+    own = {"family": method.family, "traits": method.traits, "settings": settings}
+    return result.model_copy(update=own), method.tolerance
+
+
+def _not_usable(run: Run, problem: str) -> InputError:
+    element = f"the stored result of {run.method} on {run.case.id}"
+    return InputError(problem, "Repeat the run with --fresh", element)
+
+
+def _widths(result: Result) -> dict[str, Any]:
+    """What of a result follows from its bracket and the traits of its method."""
+    return {"bracket_width": measured_width(result), "bracket_wide": bracket_is_wide(result, result.traits)}
+
+
 _FOLLOWS = ("bracket_width", "bracket_wide", "blocks", "interfaces", "unknowns", "states")
 """What of a result follows from its answer and its wall."""
 
@@ -214,20 +253,17 @@ def _fitting(run: Run, result: Result) -> Result:
     Raises:
         InputError: naming the run and what is wrong: a store may have been changed by another hand.
     """
-    element, remedy = f"the stored result of {run.method} on {run.case.id}", "Repeat the run with --fresh"
     assembly = run.case.assembly
-    if result.method != run.method:
-        raise InputError(f"it is one of {result.method or 'no method'}", remedy, element)
     blocks, interfaces = assembly.n_blocks, assembly.n_interfaces
     for name, rows in (("forces", interfaces), ("states", interfaces), ("mechanism", blocks)):
         listed = getattr(result, name)
         if listed is not None and len(listed) != rows:
             problem = f"its {name} have {len(listed)} entries and its wall needs {rows}: it was not made for this wall"
-            raise InputError(problem, remedy, element)
+            raise _not_usable(run, problem)
     try:
         answer = checked(Answer(**{each.name: getattr(result, each.name) for each in fields(Answer)}), assembly)
     except AnswerFault as error:
-        raise InputError(f"it cannot be used: {error.problem}", remedy, element) from None
+        raise _not_usable(run, f"it cannot be used: {error.problem}") from None
     kept = {name: getattr(result, name) for name in ("case", "method", "family", "traits")}
     anew = result_of(answer, assembly, **kept)
     return result.model_copy(update={name: getattr(anew, name) for name in _FOLLOWS})

@@ -17,11 +17,13 @@ import pytest
 
 from harness.engine.compare import comparison_run, recall, remember
 from harness.engine.executors import LocalExecutor
+from harness.engine.judge import judge
 from harness.engine.pipeline import execute, executed, judged
 from harness.engine.plan import plan_case
 from harness.engine.run import Limits, Run
 from harness.engine.store import SCHEMA_VERSION, open_store
 from harness.model.errors import InputError
+from harness.model.method import Traits
 from harness.model.result import Result
 from tests.commands import drystone
 from tests.walls import case, stack
@@ -230,6 +232,57 @@ def test_a_study_judges_a_row_without_its_seal_anew(store: Path):
         ((_, result, was_stored),) = executed([run], opened, LocalExecutor(1), whole=False)
     assert was_stored
     assert (result.multiplier, result.judge.accepted) == (9.5, False)
+
+
+LIES: dict[str, dict[str, Any]] = {
+    "family": {"family": "fe"},
+    "settings": {"settings": {"effort": "quick"}},
+    "traits": {"traits": Traits(bounds_above=True, brackets=True, accuracy=0.5)},
+}
+
+
+@pytest.mark.parametrize("whole_result", [True, False])
+@pytest.mark.parametrize("lie", list(LIES))
+def test_what_a_method_says_of_itself_is_asked_of_it_where_a_seal_was_made_anew(
+    store: Path, lie: str, whole_result: bool
+):
+    run, found = stored(store)
+    with open_store(store) as opened:
+        kept = opened.get(run.key)
+        assert kept is not None
+        opened.put(run.key, kept[0].model_copy(update=LIES[lie] | {"bracket_wide": True}), kept[1])
+        ((_, result, was_stored),) = executed([run], opened, LocalExecutor(1), whole=whole_result)
+    assert was_stored
+    for name in (*LIES, "bracket_wide"):
+        assert getattr(result, name) == getattr(found, name)
+
+
+def test_a_coarser_tolerance_under_a_seal_made_anew_accepts_nothing_more(store: Path):
+    """A multiplier that is .4 % too high is within a hundredth of the loads, and beyond the 1e-10 of its method."""
+    run, found = stored(store)
+    assert found.multiplier is not None
+    higher = 1.004 * found.multiplier
+    with open_store(store) as opened:
+        kept = opened.get(run.key)
+        assert kept is not None
+        raised = kept[0].model_copy(update={"multiplier": higher, "forces_multiplier": higher})
+        word = judge(run.case.assembly, raised, 9e-3).model_copy(update={"code": kept[0].judge.code})
+        assert word.accepted
+        for whole_result in (True, False):
+            opened.put(run.key, raised.model_copy(update={"judge": word}), 9e-3)
+            ((_, result, was_stored),) = executed([run], opened, LocalExecutor(1), whole=whole_result)
+            assert was_stored
+            assert (result.judge.tolerance, result.judge.accepted) == (found.judge.tolerance, False)
+
+
+def test_a_study_takes_no_row_of_another_method(store: Path):
+    run, _ = stored(store)
+    with open_store(store) as opened:
+        kept = opened.get(run.key)
+        assert kept is not None
+        opened.put(run.key, kept[0].model_copy(update={"method": "fe"}), kept[1])
+        with pytest.raises(InputError, match="the stored result of la on made-up: it is one of fe"):
+            list(executed([run], opened, LocalExecutor(1), whole=False))
 
 
 def test_a_run_of_a_wall_that_the_comparison_does_not_have_is_told(store: Path):
