@@ -166,7 +166,8 @@ class SettlingSteps(Settings):
         width: to which the largest displacement with an admissible state is bisected: forces are exact to 1e-12.
         proofs: powers of ten of the width beyond it, at most, at which a mechanism is looked for that proves the fall;
             immense: forces, in dead loads of the wall, that it would need to stand in spite of that. Rounding leaves
-            each contact half a unit in the last place to close by, so the proof takes a displacement of about 1e-7.
+            each contact half a unit in the last place to close by, and a single one three times as much, so the proof
+            takes a displacement of about 1e-7.
         moves: rates below this share of the fastest vertex are none: those of a vertex are exact to 1e-12.
         far: displacement after which the supports are followed no further.
         most: steps.

@@ -240,8 +240,9 @@ def _falling(wall: MovedWall, immense: float) -> FloatArray | None:
         return None
     velocities = vertex.value[:count]
     closings = -float(np.minimum(flow @ velocities, 0.0).sum())
-    rounding = float(np.finfo(float).eps * (wall.closed.sum(axis=1) * np.maximum(assembly.friction, 1.0)).sum())
-    if not float(problem.dead @ velocities) > immense * assembly.n_free * max(closings, 0.5 * rounding):
+    units = np.finfo(float).eps * np.maximum(assembly.friction, 1.0)[:, None] * wall.closed
+    rounding = 0.5 * float(units.sum()) + float(units.max(initial=0.0))
+    if not float(problem.dead @ velocities) > immense * assembly.n_free * max(closings, rounding):
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = problem.velocities_of_blocks(velocities)
