@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError
+from harness.model.fields import MOST_COUNTED, Counted
 from harness.model.followed import check_followed
 from harness.model.method import Answer, Finding, Status
 
@@ -86,7 +87,7 @@ class _Residual(BaseModel, defer_build=True):
 class _KnownDetails(BaseModel, defer_build=True):
     """Details that others than their method read: the judge, the verdict, the report. Any further name is free."""
 
-    unknowns: int | None = None
+    unknowns: Counted | None = None
     stopped_by_limit: bool = False
     proved_least: bool = False
     certified_bound: float = 0.0
@@ -208,9 +209,10 @@ def _bracket(value: Any) -> tuple[float, float] | None:
 
 
 def _count(value: Any) -> int:
-    count = float(_array(value, (), "a number of iterations"))
-    if count < 0.0 or count != int(count):
-        raise AnswerFault(f"The method answers with a number of iterations of {count:g}.")
+    count = _number(value, "a number of iterations")
+    if count is None or not 0.0 <= count <= MOST_COUNTED or count != int(count):
+        said = "None" if count is None else f"{count:g}"
+        raise AnswerFault(f"The method answers with a number of iterations of {said}.")
     return int(count)
 
 
@@ -220,7 +222,8 @@ def _path(value: Any) -> dict[str, list[float]]:
     columns = {}
     for name, column in value.items():
         title = f"a column {_text(name, 'name of a column of its path')!r} of its path"
-        size = np.shape(column)[:1] if isinstance(column, list | tuple | np.ndarray) else (0,)
+        listed = isinstance(column, list | tuple) or (isinstance(column, np.ndarray) and column.ndim > 0)
+        size = (len(column),) if listed else (0,)
         columns[str(name)] = _array(column, size, title).tolist()
     if len({len(column) for column in columns.values()}) > 1:
         raise AnswerFault("The method's path has columns of different lengths.")

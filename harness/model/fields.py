@@ -39,6 +39,11 @@ Positive = Annotated[float, Field(gt=0.0, le=LARGEST, strict=True), AfterValidat
 NonNegative = Annotated[float, Field(ge=0.0, le=LARGEST, strict=True)]
 Coefficient = Annotated[float, Field(ge=0.0, le=1e4, strict=True)]
 Angle = Annotated[float, Field(ge=0.0, lt=90.0, strict=True)]
+MOST_COUNTED = 2**53
+"""Largest count of an answer and its run: tables have whole numbers of 64 bits, and up to here floats are exact."""
+Counted = Annotated[int, Field(ge=0, le=MOST_COUNTED)]
+Cost = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+"""Seconds that a run took."""
 NO_TEXT = BeforeValidator(_not_text)
 """Of a whole number, which may be written with a decimal point as programs do, but not in quotes."""
 Count = Annotated[int, Field(ge=1, le=MOST_BLOCKS), NO_TEXT]

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.details import AnswerDetails
+from harness.model.fields import Cost, Counted
 from harness.model.method import Answer, Finding, Status, Traits
 
 
@@ -118,13 +119,13 @@ class Result(BaseModel):
     verdict: Verdict = Verdict.NO_REFERENCE
     comparisons: list[Comparison] = Field(default_factory=list)
     judge: Judgement = Field(default_factory=Judgement)
-    cpu_seconds: float | None = None
-    wall_seconds: float | None = None
-    peak_memory_bytes: int | None = None
-    blocks: int
-    interfaces: int
-    iterations: int = 0
-    unknowns: int | None = None
+    cpu_seconds: Cost | None = None
+    wall_seconds: Cost | None = None
+    peak_memory_bytes: Counted | None = None
+    blocks: Counted
+    interfaces: Counted
+    iterations: Counted = 0
+    unknowns: Counted | None = None
     settings: dict[str, Any] = Field(default_factory=dict)
     limits: dict[str, float] = Field(default_factory=dict)
     given: list[str] = Field(default_factory=list)

@@ -275,6 +275,22 @@ def test_a_coarser_tolerance_under_a_seal_made_anew_accepts_nothing_more(store: 
             assert (result.judge.tolerance, result.judge.accepted) == (found.judge.tolerance, False)
 
 
+@pytest.mark.parametrize("whole_result", [True, False])
+@pytest.mark.parametrize(
+    "name", ["iterations", "unknowns", "blocks", "interfaces", "peak_memory_bytes", "cpu_seconds", "wall_seconds"]
+)
+def test_numbers_that_no_run_has_are_told_where_a_seal_was_made_anew(store: Path, name: str, whole_result: bool):
+    """Tables have no counts beyond 64 bits: those of `compare`, `report` and `sweep` ended with a traceback."""
+    run, _ = stored(store)
+    with open_store(store) as opened:
+        kept = opened.get(run.key)
+        assert kept is not None
+        for wrong in (-1,) if name.endswith("seconds") else (-1, 10**30):
+            opened.put(run.key, kept[0].model_copy(update={name: wrong}), kept[1])
+            with pytest.raises(InputError, match="the result of la on made-up in it: it is damaged"):
+                list(executed([run], opened, LocalExecutor(1), whole=whole_result))
+
+
 def test_a_study_takes_no_row_of_another_method(store: Path):
     run, _ = stored(store)
     with open_store(store) as opened:
