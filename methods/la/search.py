@@ -54,10 +54,10 @@ class LimitAnalysis(LimitAnalysisFamily):
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.
 
-        A component in which they move nothing is searched as always, and so is a wall with ties or props: what those
-        do in a mechanism is not given.
+        A component in which they move nothing is searched as always, and so is a wall with ties, props or joints that
+        crush: what bars and further limits of joints do in a mechanism is not given.
         """
-        if len(assembly.bars):
+        if len(assembly.bars) or assembly.crushes:
             return self.solve(assembly, settings)
 
         def answered(part: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:

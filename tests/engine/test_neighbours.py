@@ -107,6 +107,18 @@ def test_a_given_mechanism_counts_by_the_forces_of_this_wall_alone():
     assert taken.multiplier == pytest.approx(0.75), "b / h of this wall, not of that"
 
 
+def test_a_wall_whose_joints_crush_is_searched_whatever_is_given():
+    """b / h - gamma b / f_c. Joints have further limits in series, of which no motion is given: it crashed."""
+    la = load_method("la")
+    assert la.follows_motions
+    strong, weak = (assembly(stack(2, 0.4, 1.0), 1.0, compressive_strength=strength) for strength in (800.0, 200.0))
+    topples = la.solve(strong, la.Settings())
+    assert topples.multiplier == pytest.approx(0.19, abs=1e-12)
+    taken = la.solve_from(weak, la.Settings(), [motion_of(strong, topples.mechanism)])
+    assert taken.multiplier == pytest.approx(0.16, abs=1e-12)
+    assert taken.finding is Finding.COLLAPSES
+
+
 def test_a_component_in_which_nothing_given_moves_is_searched():
     la = load_method("la")
     assert la.follows_motions
