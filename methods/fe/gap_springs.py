@@ -28,6 +28,7 @@ from methods.fe.convex_steps import bracket_collapse
 from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history, with_initial_shear
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
+from methods.numerics.crushing_claims import falls_by_statics
 from methods.numerics.residual_strength import by_component
 from methods.numerics.statics import admissible_forces
 from methods.numerics.tangent_search import by_tangents
@@ -94,7 +95,8 @@ class GapSprings(Solver):
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.crushes:
-            return by_tangents(assembly, lambda wall: self._of_component(wall, settings))
+            # A wall within tangents may bear a dead load that crushes this one, and a live load may lift it again.
+            return falls_by_statics(assembly) or by_tangents(assembly, lambda wall: self._of_component(wall, settings))
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
         if answer.finding != Finding.COLLAPSES and float(assembly.friction.max(initial=0.0)) > settings.friction_cap:
             answer = self._solve(build_model(assembly, settings), settings)

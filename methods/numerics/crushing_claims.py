@@ -48,6 +48,12 @@ def falls(answer: Answer, mechanism: FloatArray) -> Answer:
     )
 
 
+def falls_by_statics(assembly: Assembly) -> Answer | None:
+    """The answer for a wall whose dead load is not borne whatever the flow; None where statics does not show that."""
+    proof = falling_mechanism(assembly)
+    return None if proof is None else falls(Answer(Status.NOT_CONVERGED, Finding.NONE, ""), proof)
+
+
 def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
     """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
     proof = falling_mechanism(assembly)

@@ -43,6 +43,14 @@ def test_pier_overturns_about_the_edge_of_its_pressed_strip(name: str, height: f
 
 
 @pytest.mark.parametrize("name", TAKE)
+def test_pier_that_its_weight_crushes_falls_though_the_live_load_would_lift_it(name: str):
+    """The weight presses its base by 80, more than 60; three tenths of it lifted, the pier would stand."""
+    lift = {"live": {"body": [{"per_weight": [-0.02, 1.0]}]}}
+    wall = assembly(stack(1, 0.4, 4.0), 1.0, compressive_strength=60.0, loads=lift)
+    assert found(name, wall).finding is Finding.FALLS
+
+
+@pytest.mark.parametrize("name", TAKE)
 def test_tension_widens_the_pressed_strip(name: str):
     wall = assembly(stack(1, 0.4, 2.0), 1.0, cohesion=8.0, tensile_strength=4.0, compressive_strength=200.0)
     force = 16.0 + 1.6
