@@ -22,6 +22,7 @@ from methods.de.holds.release import release
 from methods.de.methods import DE, DE_BOX2D, DE_MUJOCO
 from methods.de.settings import Box2dSettings, MujocoSettings, ReleaseSettings, SweepSettings
 from methods.numerics.claims import analysed
+from methods.numerics.crushing_claims import falls_by_statics
 from methods.numerics.residual_strength import by_component
 from methods.springs.warm_up import block_on_halves
 
@@ -48,7 +49,9 @@ class DampedHolds(Solver):
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         if assembly.crushes:
-            return held_within_tangents(assembly, lambda wall: self._of_component(wall, settings))
+            # A wall within tangents may bear a dead load that crushes this one, and a live load may lift it again.
+            falls = falls_by_statics(assembly)
+            return falls or held_within_tangents(assembly, lambda wall: self._of_component(wall, settings))
 
         def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> Engine:
             make = PymunkJoints if settings.engine == "pymunk" else SequentialImpulses

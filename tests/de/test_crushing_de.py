@@ -37,6 +37,13 @@ def test_pier_overturns_about_the_edge_of_its_pressed_strip(height: float, value
     assert result.bracket[0] <= value * (1.0 + 1e-9)
 
 
+def test_pier_that_its_weight_crushes_falls_though_the_live_load_would_lift_it():
+    """The weight presses its base by 80, more than 60; three tenths of it lifted, the pier would stand."""
+    lift = {"live": {"body": [{"per_weight": [-0.02, 1.0]}]}}
+    wall = assembly(stack(1, 0.4, 4.0), 1.0, compressive_strength=60.0, loads=lift)
+    assert found("de", wall).finding is Finding.FALLS
+
+
 def test_tension_widens_the_pressed_strip():
     wall = assembly(stack(1, 0.4, 2.0), 1.0, cohesion=8.0, tensile_strength=4.0, compressive_strength=200.0)
     result = found("de", wall)
