@@ -56,7 +56,6 @@ PRIVATE = {
     "methods/dummy.py: os._exit",
     "methods/numerics/forks.py: os._exit",
     "methods/de/engines/pymunk_joints.py: arbiter._arbiter",  # the impulse of each contact point, not of the pair alone
-    "methods/peers/cra.py: native._CRA_OPTIONS",  # the tolerances that its own solver takes
 }
 """Private names of libraries that nothing public stands for, and those that are public in spite of their name."""
 

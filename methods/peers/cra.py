@@ -26,8 +26,8 @@ from methods.peers.bisection import Bisection, Words
 from methods.peers.prisms import prism
 from methods.peers.settings import BisectionSettings, CraSettings
 
-_MODULE = "compas_cra.equilibrium.cra_native"
-"""Of compas_cra, which states and solves its problems."""
+_MODULE = "compas_cra.equilibrium"
+"""Of compas_cra, which states its problems."""
 _NO_PROOF = "that it finds none is no proof of collapse"
 
 
@@ -37,11 +37,11 @@ class _Solvable:
     Args:
         assembly: the wall, with one friction coefficient.
         settings: those of `cra`; of `rbe` alone for RBE.
-        package: the module of compas_cra.
+        package: the module of compas_cra that states problems.
     """
 
     def __init__(self, assembly: Assembly, settings: BisectionSettings, package: Any) -> None:
-        self._native = native = package
+        self._solve = optional("compas_cra.nlp", "cra", "method cra").solve_nlp
         self.assembly = assembly
         self._length, self._force = assembly.length_scale, assembly.force_scale / assembly.n_free
         self._wall = self._extruded()
@@ -50,15 +50,31 @@ class _Solvable:
         with contextlib.redirect_stdout(io.StringIO()):
             if isinstance(settings, CraSettings):
                 bounds = {"d_bnd": settings.motion, "eps": settings.overlap}
-                self._problem, layout = native.cra_problem(self._wall, mu=friction, **bounds)
+                self._problem, layout = package.cra_problem(self._wall, mu=friction, **bounds)
             else:
-                self._problem, layout = native.rbe_problem(self._wall, mu=friction)
+                self._problem, layout = package.rbe_problem(self._wall, mu=friction)
                 self._problem.x_u[layout["f"]][1::4] = 0.0
         self._forces_at = layout["f"]
-        self._options = native._CRA_OPTIONS if self._coupled else None
+        self._options = self._tolerances() if self._coupled else None
         self.forces: FloatArray | None = None
         self.motion: FloatArray | None = None
         self.said: list[str] = []
+
+    @staticmethod
+    def _tolerances() -> dict[str, float | str]:
+        """What `cra_solve` of compas_cra 0.8 asks of Ipopt, and for which it has no public name."""
+        return {
+            "tol": 1e-4,
+            "dual_inf_tol": 1e-4,
+            "compl_inf_tol": 1e-4,
+            "constr_viol_tol": 1e-8,
+            "acceptable_tol": 1e-3,
+            "acceptable_constr_viol_tol": 1e-6,
+            "acceptable_compl_inf_tol": 1e-3,
+            "mu_strategy": "adaptive",
+            "mu_target": 1e-5,
+            "max_iter": 9000,
+        }
 
     @staticmethod
     def refusal(assembly: Assembly) -> str:
@@ -108,7 +124,7 @@ class _Solvable:
         Deadline.of_run().ask()
         loads = self._loads(multiplier)
         self._problem.g_l[: len(loads)] = self._problem.g_u[: len(loads)] = -loads
-        result = self._native.solve_nlp(self._problem, backend="native", options=self._options)
+        result = self._solve(self._problem, backend="native", options=self._options)
         self.said.append(f"{multiplier:.6g}: {result.status_message}")
         if result.success:
             self.forces = self._contact_forces(np.asarray(result.x)[self._forces_at])

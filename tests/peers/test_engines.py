@@ -112,7 +112,7 @@ def test_lmgc90_refuses_two_frictions_and_blocks_that_are_not_convex():
     [
         ("lmgc90", "compas_lmgc90.solver", "lmgc90"),
         ("opensees", "openseespy.opensees", "opensees"),
-        ("cra", "compas_cra.equilibrium.cra_native", "cra"),
+        ("cra", "compas_cra.equilibrium", "cra"),
     ],
 )
 def test_missing_package_is_named_with_the_way_to_install_it(
