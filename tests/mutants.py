@@ -41,7 +41,7 @@ PACKAGES = {
     ),
     "proof": (
         "methods/proof/verify/*.py methods/proof/same_wall.py",
-        "tests/bound/test_attacks.py tests/bound/test_*certificate.py tests/bound/test_courses.py "
+        "tests/bound/test_attacks*.py tests/bound/test_*certificate.py tests/bound/test_courses.py "
         "tests/bound/test_leaves.py tests/bound/test_numbers.py tests/bound/test_mutants.py "
         "tests/bound/test_same_numbers.py",
     ),

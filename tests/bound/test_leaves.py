@@ -15,7 +15,7 @@ from methods.proof.verify.checker import _Leaf
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 from methods.proof.verify.force_limits import known_of
 from methods.proof.verify.windows import WindowLimits
-from tests.bound.test_attacks import tree, windows
+from tests.bound.shown import tree, windows
 
 ROOT = list(range(8))
 PRESSING = [0, 1, 4, 5]

@@ -18,7 +18,7 @@ from methods.de.engines.mass_scaling import courses, insertion_orders, tunings
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.holds.motion import by_power
 from methods.de.settings import HoldSettings
-from tests.la.test_ties import BLOCK, SIDE, bar, block, built, tied
+from tests.tied_walls import BLOCK, SIDE, bar, block, built, tied
 
 STATED = 5e-3
 FORCES = 1e-6

@@ -23,8 +23,8 @@ from methods.de.settings import HoldSettings
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
 from tests.la.test_released_supports import AROUND
-from tests.la.test_ties import bar, block
 from tests.moving_supports import BRICKS, bricks, semicircle, weight
+from tests.tied_walls import bar, block
 
 STATED = 5e-3
 

@@ -1,4 +1,4 @@
-"""Walls on ground that accelerates: closed forms of a rocking block, a column that three programs shook, and refusals.
+"""Walls on ground that accelerates: closed forms of a rocking block, and a column that three programs shook.
 
 The closed forms share no code with the engine: periods and impacts of Housner (1963), and his equation of motion
 integrated by scipy.
@@ -6,7 +6,6 @@ integrated by scipy.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -23,20 +22,8 @@ from methods.de.engines.pymunk_blocks import PymunkBlocks
 from methods.de.settings import TimeSteps
 from methods.de.time.history import tuning
 from methods.de.time.impact import HOUSNER, measured_impact
-from tests.commands import drystone as command
+from tests.de.shaken import ALPHA, GRAVITY, HEIGHT, IMPACT, PULSES, WIDTH, P, block, column
 from tests.walls import stack, wall_data
-
-WIDTH, HEIGHT, GRAVITY = 0.4, 2.0, 9.81
-ALPHA = np.arctan(WIDTH / HEIGHT)
-RADIUS = 0.5 * np.hypot(WIDTH, HEIGHT)
-P = np.sqrt(0.75 * GRAVITY / RADIUS)
-IMPACT = 1.0 - 1.5 * np.sin(ALPHA) ** 2
-PULSES = {0.1: 0.851527, 0.2: 0.481959, 0.4: 0.303748, 0.8: 0.226254}
-"""Least rectangular pulse [g] that topples the block, by its duration [s]."""
-
-
-def block(friction: float = 0.9, **more: Any) -> drystone.Wall:
-    return drystone.build_wall(wall_data(stack(1, WIDTH, HEIGHT), friction, **({"loads": {}} | more)))
 
 
 def rocked(motion: GroundMotion, until: float) -> tuple[np.ndarray, np.ndarray]:
@@ -158,22 +145,6 @@ def test_record_from_a_file_moves_a_block_as_housner_integrates_it(tmp_path: Pat
     np.testing.assert_allclose(own, exact, atol=0.01 * abs(exact).max())
 
 
-def column() -> drystone.Wall:
-    """Seven tapered blocks of equal height and a cap, 5.95 high (the note; Temple of Apollo at Bassae)."""
-    top, height = 5.95 - 0.21, 5.95
-
-    def layer(name: str, low: float, high: float, below: float, above: float) -> dict[str, Any]:
-        left, right = [[-below / 2, low], [below / 2, low]], [[above / 2, high], [-above / 2, high]]
-        return {"id": name, "polygon": left + right}
-
-    width = np.linspace(1.11, 0.9, 8)
-    level = np.linspace(0.0, top, 8)
-    ground = {"id": "ground", "fixed": True, "polygon": [[-10, -1], [10, -1], [10, 0], [-10, 0]]}
-    drums = [layer(str(k + 1), *level[k : k + 2].tolist(), *width[k : k + 2].tolist()) for k in range(7)]
-    blocks = [ground, *drums, layer("cap", top, height, 0.9, 0.9)]
-    return drystone.build_wall({"format": "wall/1", "unit_weight": 20.0, "friction": 0.7, "blocks": blocks})
-
-
 COLUMN = {
     0.1: (3.6, 4.3),
     0.2: (1.46, 1.48),
@@ -214,38 +185,6 @@ def test_first_mode_of_the_column_sets_in_between_two_durations():
         assert found.finding is finding, (seconds, level)
 
 
-def test_means_keep_the_impulse():
-    motion = GroundMotion(np.array([0.0, 1.0, 1.5, 4.0]), np.array([1.0, -2.0, 0.0]), np.array([3.0, -2.0, 5.0]))
-    at = np.sort(np.concatenate([[0.0, 6.0], np.random.default_rng(1).uniform(0.0, 5.0, 50)]))
-    assert np.sum(motion.means(at) * np.diff(at)) == pytest.approx(2.0 - 1.0 + 6.25)
-    assert motion.means(np.array([0.0, 0.5]))[0] == pytest.approx(1.5)
-    assert motion.means(np.array([4.0, 5.0]))[0] == 0.0
-    assert motion.times(-2.0).peak == 10.0
-
-
-@pytest.mark.parametrize(("length", "unit"), [(1000.0, "mm"), (1.0 / 0.3048, "ft")])
-def test_units_of_the_file_do_not_matter(length: float, unit: str):
-    units = {"length": unit, "force": "N", "unit_weight": "kN/m3"}
-    scaled = drystone.build_wall(
-        wall_data(stack(1, length * WIDTH, length * HEIGHT), 0.9, units=units, loads={}, unit_weight=20.0)
-    )
-    own, other = (drystone.shake(wall, "0.4:0.1") for wall in (block(), scaled))
-    assert other.finding is own.finding
-    assert other.furthest[1] == pytest.approx(length * own.furthest[1], rel=1e-3)
-
-
-def test_mirrored_motion_and_heavier_stone_move_a_block_alike():
-    own = drystone.shake(block(), "0.4:0.1")
-    mirrored = drystone.shake(block(), "0.4:0.1", -1.0)
-    heavier = drystone.shake(block(unit_weight=60.0), "0.4:0.1")
-    for other, sign in ((mirrored, -1.0), (heavier, 1.0)):
-        assert other.finding is Finding.STANDS
-        extremes = [abs(found.places[:, 1, 2]).max() for found in (own, other)]
-        assert extremes[1] == pytest.approx(extremes[0], rel=2e-3)
-        early = own.places[:30, 1, 2]
-        np.testing.assert_allclose(sign * other.places[:30, 1, 2], early, atol=2e-3 * abs(early).max())
-
-
 def arch(thickness: float) -> drystone.Wall:
     ring = {"type": "ring", "inner_radius": 2.0 - thickness / 2.0, "outer_radius": 2.0 + thickness / 2.0, "count": 13}
     return drystone.build_wall(wall_data(ring | {"angles": [180, 0]}, 0.8, loads={}))
@@ -271,21 +210,6 @@ def test_block_slides_as_far_as_newmark_says():
     assert np.interp(0.2, found.time, way) == pytest.approx(distance, rel=2e-3)
 
 
-@pytest.mark.slow
-def test_multiples_are_bracketed():
-    found = drystone.least_shaking(block(), "1:0.4", 2e-3)
-    assert found.accepted, found.sentence
-    assert found.lower < PULSES[0.4] < found.upper < 1.0021 * found.lower
-    assert found.tried[0, 0] <= 0.25
-    below = found.tried[found.tried[:, 0] <= found.lower]
-    assert not below[:, 1].any()
-    assert max(below[1:, 0] / below[:-1, 0]) < 1.1
-    listed = json.loads(json.dumps(found.as_json()))
-    assert listed["bracket"] == [found.lower, found.upper]
-    with pytest.raises(InputError, match="accuracy"):
-        drystone.least_shaking(block(), "1:0.4", 2.0)
-
-
 def test_judge_rejects_what_the_places_do_not_show():
     stood, fell = (drystone.shake(block(), f"{a}:0.1") for a in (0.8, 0.9))
     wall = stood.wall.assembly
@@ -304,7 +228,7 @@ def test_judge_rejects_what_the_places_do_not_show():
     assert not accepted(stood, time=stood.time[:early], places=stood.places[:early], at_rest=False)
     assert not accepted(stood, time=stood.time[:1], places=stood.places[:1])  # before the ground has moved
     looked_at = int(np.linspace(0, len(stood.places) - 1, 50)[20])
-    for row, column, shift in (
+    for row, entry, shift in (
         (slice(None), (0, 0), 1e-2),
         (looked_at, (1, 1), -0.3),
         (-1, (1, 1), -5e-3),
@@ -312,93 +236,8 @@ def test_judge_rejects_what_the_places_do_not_show():
         (5, (1, 0), np.nan),
     ):
         places = stood.places.copy()
-        places[(row, *column)] += shift
-        assert not accepted(stood, places=places), (row, column)
+        places[(row, *entry)] += shift
+        assert not accepted(stood, places=places), (row, entry)
     tipped = fell.places.copy()
     tipped[-1] = [[0.0, 0.0, 0.0], [-0.8, 0.1, 1.2]]
     assert not accepted(fell, places=tipped)
-
-
-@pytest.mark.parametrize(
-    ("more", "words"),
-    [
-        ({"units": {"length": "1", "force": "1"}}, "no unit of length"),
-        ({"cohesion": 2.0}, "joints with cohesion"),
-        ({"friction": {"default": 0.5, "dilatancy": 0.2}}, "dilatancy"),
-        ({"loads": {"gravity": [0.1, -1.0]}}, "not the weight of the blocks alone"),
-        ({"loads": {"gravity": False}}, "not the weight"),
-        ({"loads": {"dead": {"points": [{"block": "1", "at": [0, 1], "force": [1, 0]}]}}}, "not the weight"),
-        ({"unit_weight": 0.0}, "has no weight"),
-    ],
-)
-def test_walls_that_are_not_followed_are_refused(more: dict[str, Any], words: str):
-    with pytest.raises(InputError, match=words):
-        drystone.shake(block(**more), "0.5:0.1")
-
-
-@pytest.mark.parametrize(
-    "text", [*["1", "1:0", "1:-1", "a:1", "1:1,", "1:1:1", "nan:1", "inf:1", "0:1", "1:2000", "2000:1"], ""]
-)
-def test_pulses_that_are_none_are_refused(text: str):
-    with pytest.raises(InputError):
-        pulses_of(text)
-
-
-HEAD = "time [s],acceleration [g]\n"
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", "line 1.*first line"),
-        ("0,1\n1,2\n", "first line"),
-        ("time,acceleration\n0,1\n1,2\n", "first line"),
-        (HEAD, "0 samples"),
-        (HEAD + "0,1\n", "1 samples"),
-        (HEAD + "0,1\n,2\n", 'line 3.*",2"'),
-        (HEAD + "0,1\n\n1,2\n", "line 3"),
-        (HEAD + "0,1\n1\n", "line 3"),
-        (HEAD + "0,1\n1,nan\n", "line 3"),
-        (HEAD + "0,1\n1,2,3\n", "line 3"),
-        (HEAD + "0,1\n2,1\n1,0\n", "line 4.*does not follow"),
-        (HEAD + "0,1\n0,1\n", "does not follow"),
-        (HEAD + "0,1\n2000,1\n", "at most 1000 s"),
-        (HEAD + "0,1\n1,4000\n", "at most 1000 g"),
-        (HEAD + "0,0\n1,0\n", "all its accelerations are zero"),
-        (HEAD + "".join(f"{k / 1000},1\n" for k in range(200_002)), "200,002 samples"),
-    ],
-)
-def test_records_with_faults_are_refused_by_file_and_line(text: str, words: str, tmp_path: Path):
-    path = tmp_path / "ground.csv"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(InputError) as caught:
-        read_motion(path)
-    assert str(caught.value).startswith(str(path))
-    caught.match(words)
-
-
-def test_command(tmp_path: Path):
-    path, table, chart = (tmp_path / name for name in ("wall.json", "motion.csv", "motion.svg"))
-    path.write_text(json.dumps(wall_data(stack(1, WIDTH, HEIGHT), 0.9)), encoding="utf-8")
-    done = command("shake", path, "--pulse", "0.9:0.1", "-o", table)
-    assert done.returncode == 0, done.stderr
-    assert "The wall falls" in done.stdout
-    assert "Engine: pymunk" in done.stdout
-    assert table.read_text(encoding="utf-8").startswith("time,1 ux,1 uy,1 rotation\n0.0,")
-    done = command("shake", path, "--pulse", "0.8:0.1", "--multiple", "0.5", "--json", "-o", chart)
-    listed = json.loads(done.stdout)
-    assert (done.returncode, listed["finding"], listed["fallen"]) == (0, "stands", [])
-    assert listed["engine"]["impact"] == pytest.approx(IMPACT, rel=1e-3)
-    assert chart.read_text(encoding="utf-8").lstrip().startswith("<?xml")
-    for words in (
-        [],
-        ["--pulse", "1:1", "--motion", "x.csv"],
-        ["--pulse", "1"],
-        ["--motion", tmp_path / "none.csv"],
-        ["--pulse", "1:0.1", "--least", "--multiple", "2"],
-        ["--pulse", "1:0.1", "--multiple", "0"],
-        ["--pulse", "1:0.1", "--gravity", "-1"],
-    ):
-        done = command("shake", path, *words)
-        assert (done.returncode, done.stdout) == (2, ""), words
-        assert done.stderr.startswith("drystone: "), words

@@ -23,7 +23,7 @@ from harness.engine.store import open_store
 from harness.engine.sweep.frame import tidy
 from harness.engine.sweep.running import sweep
 from harness.model.errors import InputError
-from tests.engine.test_sweep import runs_of, study
+from tests.engine.studies import runs_of, study
 
 ROOT = Path(__file__).resolve().parents[2]
 COST = ["cpu_seconds", "wall_seconds", "peak_memory_bytes", "started"]

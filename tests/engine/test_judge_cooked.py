@@ -15,8 +15,9 @@ from harness.engine.judge import judge
 from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding
 from harness.model.result import Judgement, result_of
-from tests.cooked import KINDS, SLACK, TOLERANCE, cook
+from tests.cooked import KINDS, cook
 from tests.enumeration import least_by_enumeration
+from tests.known_claims import SLACK, TOLERANCE
 from tests.known_walls import WALLS, item
 
 FALSE = int(os.environ.get("DRYSTONE_MUTANTS", "480"))

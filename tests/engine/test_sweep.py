@@ -1,14 +1,8 @@
-"""Studies: what a file expands to, what is run again and what is not, and the statistics against closed forms."""
+"""Studies: what a file expands to, and what is refused before anything runs."""
 
 from __future__ import annotations
 
 import json
-import os
-import signal
-import sqlite3
-import subprocess
-import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -19,38 +13,17 @@ from scipy import stats
 
 from drystone.studies import changed, shipped_studies
 from drystone.studies import sweep as drystone_sweep
-from harness.engine.executors import LocalExecutor
 from harness.engine.plan import Limits
-from harness.engine.store import open_store
-from harness.engine.sweep import statistics
-from harness.engine.sweep.expand import SweepRun, expand, sources_of
-from harness.engine.sweep.frame import tidy, write
+from harness.engine.sweep.expand import sources_of
 from harness.engine.sweep.paths import with_values
 from harness.engine.sweep.quick import axis_of, quick_study
-from harness.engine.sweep.running import sweep
-from harness.engine.sweep.study import Study, read_study
-from harness.engine.sweep.summary import summarise
+from harness.engine.sweep.study import read_study
 from harness.model.build import build
 from harness.model.errors import InputError
-from harness.model.reading import parse_wall, validate
+from harness.model.reading import parse_wall
 from tests.commands import drystone
+from tests.engine.studies import runs_of, study
 from tests.walls import running_bond, stack, wall_data
-
-
-def study(**more: Any) -> Study:
-    data = {"name": "made-up", "title": "A study of a test", "methods": ["la-associated"], "wall": wall_data(stack(2))}
-    return validate(Study, data | more, "test")
-
-
-def runs_of(asked: Study) -> list[SweepRun]:
-    return expand(asked, sources_of(asked))
-
-
-def rows_of(asked: Study, store: Path, *, processes: int = 2, fresh: bool = False) -> tuple[pd.DataFrame, int]:
-    with open_store(store) as opened:
-        ended = list(sweep(runs_of(asked), opened, LocalExecutor(processes), fresh=fresh))
-    varied = [*asked.vary, *(name for group in asked.together for name in group), *asked.draw]
-    return tidy((row for _, row, _ in ended), varied), sum(stored for _, _, stored in ended)
 
 
 def test_a_grid_is_every_value_with_every_other_and_methods_run_for_their_own_settings_alone():
@@ -140,132 +113,6 @@ def test_draws_follow_their_distributions_and_their_seed():
     assert runs_of(other_seed)[0].variant.values != runs_of(asked)[0].variant.values
 
 
-def test_a_study_is_run_once_and_gives_the_closed_form(tmp_path: Path):
-    asked = study(vary={"friction": [0.1, 0.2, 0.3, 2.0]}, methods=["la-associated", "fe"])
-    table, stored = rows_of(asked, tmp_path / "s.sqlite")
-    assert stored == 0
-    # two blocks of 0.3 by 0.2 slide at the friction and topple at b / (n h) = 0.75
-    expected = np.minimum(table["friction"].astype(float), 0.75)
-    np.testing.assert_allclose(table["multiplier"], expected, rtol=1e-8)
-    assert table["judge_accepted"].all()
-    assert table.attrs["units"]["cpu_seconds"] == "s"
-    again, stored = rows_of(asked, tmp_path / "s.sqlite", processes=1)
-    assert stored == 8
-    pd.testing.assert_frame_equal(again, table)
-    fewer, stored = rows_of(study(vary={"friction": [0.2, 0.25]}), tmp_path / "s.sqlite")
-    assert stored == 1, "another study finds the runs it shares"
-    assert fewer["multiplier"].tolist() == pytest.approx([0.2, 0.25])
-
-
-def test_the_number_of_workers_does_not_change_an_answer(tmp_path: Path):
-    asked = study(vary={"friction": {"from": 0.1, "to": 0.9, "count": 4}}, methods=["la-associated", "fe", "la"])
-    one, _ = rows_of(asked, tmp_path / "one.sqlite", processes=1)
-    two, _ = rows_of(asked, tmp_path / "two.sqlite", processes=2)
-    cost = ["cpu_seconds", "wall_seconds", "peak_memory_bytes", "started"]
-    pd.testing.assert_frame_equal(one.drop(columns=cost), two.drop(columns=cost))
-
-
-def test_a_wall_that_cannot_be_built_costs_its_row(tmp_path: Path):
-    far = {"type": "stack", "width": 0.3, "height": 0.2, "count": 2, "offsets": [0.0, 0.0]}
-    asked = study(wall=wall_data(far), vary={"pattern.offsets": [[0.0, 0.05], [0.0, 5.0], [0.0, 0.1]]})
-    table, _ = rows_of(asked, tmp_path / "s.sqlite")
-    assert table["status"].tolist() == ["ok", "refused", "ok"]
-    assert "floating" in table["sentence"][1] or "touch" in table["sentence"][1]
-
-
-def test_tables_are_written_with_their_units(tmp_path: Path):
-    table, _ = rows_of(study(vary={"friction": [0.1, 0.2]}), tmp_path / "s.sqlite")
-    names = {path.name for path in write(table, tmp_path / "out", "runs")}
-    assert {"runs.csv", "runs.units.json"} <= names
-    read = pd.read_csv(tmp_path / "out" / "runs.csv")
-    assert read["multiplier"].tolist() == table["multiplier"].tolist(), "every digit"
-    units = json.loads((tmp_path / "out" / "runs.units.json").read_text())
-    assert set(units) == set(read.columns)
-
-
-def test_tables_are_written_as_parquet_too(tmp_path: Path):
-    pytest.importorskip("pyarrow", reason="it is large; `.ci/extras` runs this test")
-    table, _ = rows_of(study(vary={"friction": [0.1, 0.2]}), tmp_path / "s.sqlite")
-    write(table, tmp_path / "out", "runs")
-    parquet = pd.read_parquet(tmp_path / "out" / "runs.parquet")
-    assert parquet["multiplier"].tolist() == table["multiplier"].tolist()
-    assert parquet.attrs["units"] == json.loads((tmp_path / "out" / "runs.units.json").read_text())
-
-
-def made_up(values: list[float | None], **columns: Any) -> pd.DataFrame:
-    rows = [
-        {
-            "number": number,
-            "case": "a",
-            "method": "la",
-            "status": "ok" if value is not None else "timeout",
-            "finding": "collapses" if value is not None else "none",
-            "multiplier": value,
-            "judge_accepted": True,
-        }
-        for number, value in enumerate(values)
-    ]
-    return tidy(rows, []).assign(**columns)
-
-
-def test_probability_of_failure_is_counted_with_wilsons_interval():
-    table = made_up([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, None])
-    found = statistics.failure_probability(table, ["case", "method"], [0.3]).iloc[0]
-    assert (found["walls"], found["failed"], found["probability"]) == (10, 3, 0.3)
-    z, n, p = 1.959963985, 10, 0.3
-    centre, half = p + z * z / (2 * n), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    assert found["low"] == pytest.approx((centre - half) / (1 + z * z / n), abs=1e-8)
-    assert found["high"] == pytest.approx((centre + half) / (1 + z * z / n), abs=1e-8)
-
-
-def test_a_wall_that_falls_under_its_dead_load_has_failed_at_any_multiplier():
-    table = made_up([0.5, 0.6])
-    table.loc[0, ["finding", "multiplier"]] = ["falls", np.nan]
-    assert statistics.failure_probability(table, ["case", "method"], [0.0])["probability"][0] == 0.5
-
-
-def test_a_rejected_answer_counts_for_nothing():
-    table = made_up([0.5, 0.6])
-    table.loc[0, "judge_accepted"] = False
-    assert statistics.quantiles(table, ["case", "method"])["answered"].tolist() == [1]
-
-
-def test_what_the_judge_cannot_decide_counts_and_is_told():
-    table = made_up([0.5, 0.6])
-    table["judge_accepted"] = table["judge_accepted"].astype("boolean")
-    table.loc[0, "judge_accepted"] = pd.NA
-    assert statistics.quantiles(table, ["case", "method"])["answered"].tolist() == [2]
-    study = Study.model_validate(
-        {"name": "x", "title": "x", "cases": ["a"], "methods": ["la"], "vary": {"seed": {"seeds": 2}}}
-    )
-    assert [row for row in summarise(study, table).remarks if row.startswith("1 of 2 runs count although")]
-
-
-def test_fragility_curve_of_a_lognormal_sample_is_that_lognormal_within_its_band():
-    rng = np.random.default_rng(3)
-    values = np.exp(np.log(0.5) + 0.2 * rng.standard_normal(300))
-    curve = statistics.fragility(made_up(list(values)), ["case", "method"])
-    # with 300 walls the deviations of median and dispersion are 0.2 / sqrt(300) = 0.012 and 0.008
-    assert curve["median"][0] == pytest.approx(0.5, rel=0.04)
-    assert curve["dispersion"][0] == pytest.approx(0.2, abs=0.025)
-    true = stats.norm.cdf(np.log(curve["multiplier"] / 0.5) / 0.2)
-    inside = (curve["lognormal_low"] <= true) & (true <= curve["lognormal_high"])
-    assert inside.mean() > 0.8
-    counted = curve["low"].notna() & curve["high"].notna()
-    assert ((curve["low"] <= true) & (true <= curve["high"]))[counted].mean() > 0.8
-    assert (curve["probability"].diff().dropna() > 0.0).all()
-
-
-def test_sensitivity_names_the_quantity_that_matters():
-    rng = np.random.default_rng(0)
-    first, second = rng.random(200), rng.random(200)
-    table = made_up(list(0.3 + first + 0.1 * second), first=first, second=second)
-    found = statistics.sensitivity(table, ["first", "second"], ["case", "method"]).set_index("quantity")
-    # variances 1 / 12 and 0.01 / 12: shares of 0.990 and 0.0099
-    assert found["first_order"]["first"] == pytest.approx(0.99, abs=0.1)
-    assert found["delta"]["first"] > 3.0 * found["delta"]["second"]
-
-
 @pytest.mark.parametrize("name", sorted(shipped_studies()))
 def test_every_shipped_study_expands(name: str):
     path = shipped_studies()[name]
@@ -343,28 +190,6 @@ def test_tables_that_can_stand_nowhere_are_refused_before_the_runs(tmp_path: Pat
     assert (tmp_path / "file").read_text() == "old"
 
 
-def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path: Path):
-    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
-    words = ("sweep", "wall.json", "--vary", "friction=0.1:0.5:5", "--methods", "la-associated")
-    plan = drystone(*words, "--dry-run", "--json", cwd=tmp_path)
-    assert plan.returncode == 0, plan.stderr
-    assert json.loads(plan.stdout)["to_run"] == {"la-associated": 5}
-    assert not (tmp_path / "out").exists()
-    done = drystone(*words, "--at", "0.2", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "5 runs: 5 ok" in done.stdout
-    printed = [line.split() for line in done.stdout.splitlines()]
-    assert ["friction", "la-associated"] in printed
-    assert ["0.1", "0.1"] in printed  # stones of a stack slide at the coefficient of friction
-    page = (tmp_path / "out" / "wall-friction.html").read_text()
-    assert "wall over friction" in page
-    assert "<svg" in page
-    assert "http://" not in page.replace("http://www.w3.org", "")
-    assert (tmp_path / "out" / "wall-friction" / "failure.csv").is_file()
-    plan = drystone(*words, "--dry-run", "--json", cwd=tmp_path)
-    assert json.loads(plan.stdout)["to_run"] == {}
-
-
 def test_defects_of_a_wall_scatter_its_multiplier(tmp_path: Path):
     (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
     words = ("sweep", "wall.json", "--imperfection", "0.02:0.1:2", "--seeds", "2", "--at", "0.1", "--no-report")
@@ -377,81 +202,6 @@ def test_defects_of_a_wall_scatter_its_multiplier(tmp_path: Path):
     assert ((means["mean_low"] > 0.0) & (means["mean_low"] < means["mean_high"])).all()
     assert (pd.read_csv(tmp_path / "out" / "wall-imperfection-seed" / "failure.csv")["walls"] == 2).all()
     assert "4 of 4 runs count although their answers are not judged" in " ".join(done.stdout.split())
-
-
-def test_stores_are_merged_without_doubling(tmp_path: Path):
-    first, second = study(vary={"friction": [0.1, 0.2]}), study(vary={"friction": [0.2, 0.3]})
-    rows_of(first, tmp_path / "a.sqlite")
-    rows_of(second, tmp_path / "b.sqlite")
-    done = drystone("store", "merge", "a.sqlite", "b.sqlite", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "1 runs copied, 1 were there already" in done.stdout
-    _, stored = rows_of(study(vary={"friction": [0.1, 0.2, 0.3]}), tmp_path / "a.sqlite")
-    assert stored == 3
-    with open_store(tmp_path / "a.sqlite") as store:
-        result = store.get(next(run.key for run in runs_of(second) if run.variant.values["friction"] == 0.3))
-        assert result is not None
-        assert len(result[0].forces or ()) == 2
-    assert drystone("store", "merge", "a.sqlite", "a.sqlite", cwd=tmp_path).returncode == 2
-    assert drystone("store", "merge", "a.sqlite", "absent.sqlite", cwd=tmp_path).returncode == 2
-
-
-def test_a_killed_coordinator_loses_no_run_that_ended_and_doubles_none(tmp_path: Path):
-    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
-    words = ["sweep", "wall.json", "--vary", "friction=0.1:0.9:120", "--methods", "la-associated", "--no-report"]
-    program = "from drystone.cli.main import main; main()"
-    child = subprocess.Popen([sys.executable, "-c", program, *words], cwd=tmp_path, stderr=subprocess.DEVNULL)
-    path = tmp_path / "out" / "drystone.sqlite"
-    deadline = time.monotonic() + 60.0
-    while time.monotonic() < deadline and (not path.exists() or kept(path) < 20):
-        time.sleep(0.05)
-    os.kill(child.pid, signal.SIGKILL)
-    child.wait()
-    before = kept(path)
-    assert 20 <= before < 120
-    done = drystone(*words, "--json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["runs"] == 120
-    assert kept(path) == 120
-
-
-def kept(path: Path) -> int:
-    with open_store(path) as store:
-        return len(store.table())
-
-
-def test_two_coordinators_on_one_store_lose_and_double_nothing(tmp_path: Path):
-    (tmp_path / "wall.json").write_text(json.dumps(wall_data(stack(2))))
-    words = ["sweep", "wall.json", "--vary", "friction=0.1:0.9:24", "--methods", "la-associated", "--no-report"]
-    program = "from drystone.cli.main import main; main()"
-    both = [
-        subprocess.Popen([sys.executable, "-c", program, *words, "-o", f"out/{name}"], cwd=tmp_path) for name in "ab"
-    ]
-    assert [child.wait(timeout=120) for child in both] == [0, 0]
-    assert kept(tmp_path / "out" / "drystone.sqlite") == 24
-    first, second = (pd.read_csv(tmp_path / "out" / name / "runs.csv") for name in "ab")
-    assert first["multiplier"].tolist() == second["multiplier"].tolist()
-
-
-def test_a_full_disk_is_told_and_loses_nothing_that_was_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    asked = study(vary={"friction": {"from": 0.1, "to": 0.9, "count": 60}})
-    path = tmp_path / "s.sqlite"
-    monkeypatch.setattr("harness.engine.store._connect", small_disk)
-    with pytest.raises(InputError, match="disk is full"):
-        rows_of(asked, path)
-    monkeypatch.undo()
-    before = kept(path)
-    assert 0 < before < 60
-    table, stored = rows_of(asked, path)
-    assert stored == before
-    assert kept(path) == len(table) == 60
-
-
-def small_disk(path: Path, how: str = "") -> sqlite3.Connection:
-    """A connection whose file may grow to 20 pages; the database says then what it says of a full disk."""
-    connection = sqlite3.connect(path)
-    connection.execute("PRAGMA max_page_count = 20")
-    return connection
 
 
 def test_runs_are_numbered_in_order_whatever_walls_and_methods():
@@ -508,36 +258,3 @@ def test_a_study_is_changed_where_something_is_given_and_else_not():
     assert more.settings == {"la-associated": {"solver": "highs"}, "fe": {"points": 3}}
     with pytest.raises(InputError, match="magic"):
         drystone_sweep(own, settings={"la-associated": {"solver": "magic"}})
-
-
-def test_lost_runs_are_counted_beside_the_mean_of_the_others():
-    asked = study(methods=["la"], vary={"seed": {"seeds": 4}})
-    assert summarise(asked, made_up([0.5, 0.6, None, None])).by_method() == [{"la": "0.55 ± 0.071 (2 of 4 lost)"}]
-    assert summarise(asked, made_up([0.5, 0.6])).by_method() == [{"la": "0.55 ± 0.071"}]
-    assert summarise(asked, made_up([None])).by_method() == [{"la": "no answer"}]
-
-
-def test_walls_that_all_collapse_at_one_multiplier_have_no_lognormal_curve():
-    curve = statistics.fragility(made_up([0.5] * 6), ["case", "method"])
-    assert curve["probability"].tolist() == [1.0]
-    assert curve[["lognormal", "lognormal_low", "lognormal_high", "median", "dispersion"]].isna().all(axis=None)
-
-
-def test_the_band_of_a_lognormal_curve_is_as_wide_as_theory_says():
-    # Of n walls the deviation of the fitted probability at the median is that of the mean: phi(0) / sqrt(n).
-    rng = np.random.default_rng(5)
-    curve = statistics.fragility(made_up(list(np.exp(0.3 * rng.standard_normal(300)))), ["case", "method"])
-    middle = curve.iloc[(curve["lognormal"] - 0.5).abs().argmin()]
-    half = 1.959964 * stats.norm.pdf(0.0) / np.sqrt(300)
-    # ends from 400 samples scatter by a twentieth or so each
-    assert 0.5 * (middle["lognormal_high"] - middle["lognormal_low"]) == pytest.approx(half, rel=0.1)
-
-
-@pytest.mark.parametrize(("walls", "told"), [(19, False), pytest.param(20, True, marks=pytest.mark.slow)])
-def test_ten_walls_a_quantity_tell_what_matters_and_fewer_do_not(walls: int, told: bool):
-    rng = np.random.default_rng(1)
-    first, second = rng.random(walls), rng.random(walls)
-    found = statistics.sensitivity(
-        made_up(list(0.3 + first), first=first, second=second), ["first", "second"], ["case"]
-    )
-    assert len(found) == (2 if told else 0)

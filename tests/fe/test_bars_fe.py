@@ -17,7 +17,7 @@ from harness.model.load_steps import LoadSteps
 from harness.model.method import Finding
 from harness.model.method_registry import load_method
 from harness.model.result import Result
-from tests.la.test_ties import BLOCK, PRINTED, SIDE, arch, bar, block, built, random_wall, tied
+from tests.tied_walls import BLOCK, PRINTED, SIDE, arch, bar, block, built, random_wall, tied
 from tests.walls import assembly, stack
 
 SOFT = {"stiffness": 1.0}

@@ -10,7 +10,7 @@ from harness.model.breakpoints import CHANGES, Breakpoint, breakpoints
 from harness.model.method_registry import load_method
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from tests.known_walls import box, of_blocks
-from tests.la.test_ties import tied
+from tests.tied_walls import tied
 from tests.walls import assembly, running_bond, stack
 
 

@@ -19,7 +19,8 @@ from harness.model.wall import Wall
 from methods.numerics.pressed_state import exact_state, moving_rows
 from methods.numerics.stress_blocks import pressed_shares
 from tests.bonded_walls import BOND
-from tests.cooked import KINDS, SLACK, TOLERANCE
+from tests.cooked import KINDS
+from tests.known_claims import SLACK, TOLERANCE
 from tests.known_walls import Item
 from tests.pressed_walls import DIGITS, SEMICIRCLES, arch, at_ends, found, set_in
 from tests.walls import assembly, running_bond, stack, wall_data

@@ -9,11 +9,13 @@ from typing import Any
 import ezdxf
 import numpy as np
 
+from cases.start import flemish
 from harness.formats.importing import Imported, Mapping, import_drawing
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top of a stone."""
 DATA = Path(__file__).parents[1] / "data" / "drawings"
+WALL = flemish(length=1.0, height=0.45)
 
 
 def boxes(imported: Imported) -> list[Box]:

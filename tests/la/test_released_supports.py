@@ -21,7 +21,7 @@ from harness.model.method_registry import load_method
 from methods.la.core.reaction import ExtremeReaction, extreme_reaction
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, data
-from tests.la.test_ties import arch, bar, block
+from tests.tied_walls import arch, bar, block
 
 EXACT = 1e-9
 """Relative accuracy that the methods declare."""

@@ -20,7 +20,7 @@ from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.wall_drawing import wall_drawing
 from tests.commands import drystone as command
-from tests.la.test_ties import bar, block
+from tests.tied_walls import bar, block
 
 PROP = {"id": "raker", "prestress": 0.5}
 TENSIONS = [2.0, -1.5]
