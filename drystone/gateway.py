@@ -20,9 +20,8 @@ from drystone.comparing import compare
 from drystone.walls import Wall, build_wall
 from harness.engine.run import Limits
 from harness.engine.sweep.paths import has_number, setting_of, with_values
-from harness.model.errors import InputError
+from harness.model.errors import InputError, optional
 from harness.model.method import Finding
-from harness.model.optional import optional
 
 NAME = "drystone"
 """Of the model, by which clients ask for it."""

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.model.errors import InputError, did_you_mean
-from harness.model.optional import optional
+from harness.model.errors import InputError, did_you_mean, optional
 
 if TYPE_CHECKING:
     from harness.formats.drawing import Asked, Drawing

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
 from itertools import accumulate, islice
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -267,3 +268,24 @@ def first_few(names: Sequence[str], most: int) -> str:
     """So many names in words, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more
+
+
+def optional(package: str, extra: str, part: str) -> Any:
+    """A package that an extra installs.
+
+    Args:
+        package: its name for Python.
+        extra: of drystone that brings it.
+        part: what needs it, as the error names it: "method scip".
+
+    Raises:
+        MissingPackage: it is not installed.
+    """
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise MissingPackage(
+            f"it needs the package {package} ({error})",
+            f'Install it with pip install "drystone[{extra}]", in a clone with pip install -e ".[{extra}]"',
+            part,
+        ) from error

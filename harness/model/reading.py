@@ -12,11 +12,10 @@ from pydantic import BaseModel, ValidationError
 
 from harness.model.build import Built, build
 from harness.model.errors import MOST_WORDED, InputError, did_you_mean, in_file, raise_faults
-from harness.model.field_words import names_at, remedy_at
+from harness.model.field_words import SCOPE, names_at, outside_the_model, remedy_at
 from harness.model.fields import MOST_BLOCKS, TAGS
 from harness.model.json_text import MOST_SHOWN, read_json
 from harness.model.names import faults_of_data
-from harness.model.scope import SCOPE, outside_the_model
 from harness.model.wall import Wall
 
 ModelType = TypeVar("ModelType", bound=BaseModel)

@@ -16,8 +16,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline, best_so_far
+from harness.model.errors import optional
 from harness.model.method import Answer, Finding, Solver, Status
-from harness.model.optional import optional
 from methods.numerics.claims import at_limit, with_proof
 from methods.numerics.statics import admissible_forces, dilatant_mechanism
 from methods.numerics.vertex import Vertex

@@ -7,8 +7,8 @@ from typing import Any, Protocol
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import best_so_far
+from harness.model.errors import optional
 from harness.model.method import Answer, Finding, Solver, Status
-from harness.model.optional import optional
 from methods.numerics.claims import analysed
 from methods.peers.settings import BisectionSettings
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline
-from harness.model.optional import optional
+from harness.model.errors import optional
 from methods.peers.bisection import Bisection, Words
 from methods.peers.prisms import prism
 from methods.peers.settings import BisectionSettings, CraSettings

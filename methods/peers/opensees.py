@@ -21,9 +21,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline, best_so_far
-from harness.model.errors import MissingPackage
+from harness.model.errors import MissingPackage, optional
 from harness.model.method import Answer, Finding, Solver, Status
-from harness.model.optional import optional
 from methods.numerics.claims import analysed
 from methods.peers.settings import OpenSeesSettings
 

@@ -14,10 +14,44 @@ from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Traits
 from harness.model.ranges import Range, differences, range_of
 from reports.charts.families import StudyCurves, friction_of, proportion_of, same_but_both, solved
-from reports.charts.heat import WITHIN, legend, shade
 from reports.environment import environment
 from reports.geometry import shapes, thrust_lines
 from reports.labels import labels, numbers
+
+WITHIN = 0.01
+"""Methods whose multipliers lie within a hundredth of the lowest agree, as in the other sentences of the report."""
+_STEPS = (0.05, 0.2)
+"""Least differences at which the shade changes: readers see three shades apart, not more."""
+_WORDS = {
+    "agree": "agree within 1 %",
+    "open": "brackets do not decide",
+    "differ-1": "differ by more than 1 %",
+    "differ-2": "by more than 5 %",
+    "differ-3": "by more than 20 %",
+    "lost": "an answer is missing",
+}
+"""What each shade means, in the order of the legend."""
+
+
+def shade(least: float, most: float) -> str:
+    """The shade of a wall on which families differ by a share between two; NaN where an answer is missing."""
+    if math.isnan(least) or math.isnan(most):
+        return "lost"
+    if most <= WITHIN:
+        return "agree"
+    if least <= WITHIN:
+        return "open"
+    return f"differ-{1 + sum(least > step for step in _STEPS)}"
+
+
+def legend(used: set[str]) -> Markup:
+    """The shades that a map has, in words."""
+    items = Markup("").join(
+        Markup('<li><span class="shade {}"></span>{}</li>').format(name, words)
+        for name, words in _WORDS.items()
+        if name in used
+    )
+    return Markup('<ul class="legend">{}</ul>').format(items)
 
 
 @dataclass(frozen=True)

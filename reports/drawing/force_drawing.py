@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bar_forces import bar_forces_of
+from harness.model.bar_forces import BarForce, bar_forces_of
 from harness.model.case import Case
 from harness.model.result import Result
-from reports.drawing.bars import bar_forces
 from reports.drawing.display_list import (
     BELOW,
     LETTERS,
@@ -58,7 +57,7 @@ def force_drawing(case: Case, result: Result, layers: Collection[str] = _LAYERS)
     found = shapes.thrusts(assembly, forces, smallest=thrust_lines.SMALLEST)
     listed = bar_forces_of(case, result)
     if listed:
-        drawn.parts.extend(bar_forces(frame, assembly, listed))
+        drawn.parts.extend(_bar_forces(frame, assembly, listed))
     if len(found.size):
         drawn.parts.extend(_groups(frame, assembly, found, forces, layers))
         drawn.parts.extend(_force_scale(frame, float(found.size.max()), case.wall.units.force))
@@ -166,3 +165,20 @@ def _force_scale(frame: Frame, largest: float, unit: str) -> list[Shape]:
     line = np.array([(x - 330, y), (x, y)])
     text = Text("", (x + 60, y + 0.35 * LETTERS), numbers.quantity(force, unit), LETTERS, "start")
     return [Lines("force-scale", (line,), _width(frame, force / largest)), text]
+
+
+def _bar_forces(frame: Frame, assembly: Assembly, forces: Sequence[BarForce]) -> list[Shape]:
+    """The bars with their tensions beside them, dashed where they bear nothing; compression is negative."""
+    placed = frame.place(np.stack([assembly.bars.end1, assembly.bars.end2], axis=1))
+    drawn: list[Shape] = []
+    for bar, line in zip(forces, placed, strict=True):
+        if bar.state == "slack":
+            drawn.append(Lines("idle", (line,)))
+            continue
+        drawn.append(Lines(bar.kind, (line,)))
+        x, y = line.mean(axis=0).tolist()
+        across, along = abs(np.ptp(line, axis=0)).tolist()
+        beside, above, anchor = (0.09, 0.0, "start") if along > across else (0.0, 0.05, "middle")
+        at, size = (x + beside * frame.block, y - above * frame.block), min(110.0, 0.17 * frame.block)
+        drawn.append(Text("said", at, numbers.given(bar.tension, 3), size, anchor))
+    return drawn

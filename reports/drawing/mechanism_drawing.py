@@ -7,9 +7,8 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Case
 from harness.model.result import Result, relative_velocities
-from reports.drawing.bars import bar_lines
 from reports.drawing.display_list import Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, chosen
-from reports.drawing.wall_drawing import DRAWN_INTERFACES, length_scale, load_arrows
+from reports.drawing.wall_drawing import DRAWN_INTERFACES, bar_lines, length_scale, load_arrows
 from reports.findings import joints
 from reports.findings.agreement import measure_of
 from reports.geometry import shapes

@@ -8,8 +8,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.case import Case
+from harness.model.result import vertex_velocities
 from harness.model.wall import Units
-from reports.drawing.bars import bar_lines
 from reports.drawing.display_list import (
     BELOW,
     LETTERS,
@@ -137,3 +137,13 @@ def length_scale(frame: Frame, unit: str) -> list[Shape]:
     text = numbers.quantity(length, unit)
     lines = tuple(np.array(line) for line in bar)
     return [Lines("scale", lines), Text("", (x + 60, y + 0.35 * LETTERS), text, LETTERS, "start")]
+
+
+def bar_lines(frame: Frame, assembly: Assembly, shift: FloatArray | None = None) -> list[Shape]:
+    """A line a bar between its ends, props wider; moved along displacements (n, 3) of the blocks, if any."""
+    bars, ends = assembly.bars, []
+    for block, point in ((assembly.bars.block_a, bars.end1), (assembly.bars.block_b, bars.end2)):
+        moved = 0.0 if shift is None else vertex_velocities(point, assembly.centroid[block], shift[block])
+        ends.append(point + moved)
+    placed = frame.place(np.stack(ends, axis=1))
+    return [Lines(kind, (line,)) for kind, line in zip(bars.kinds, placed, strict=True)]

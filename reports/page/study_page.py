@@ -14,7 +14,7 @@ from markupsafe import Markup
 from harness.model.ranges import percent_text
 from harness.model.writing import write_whole
 from reports.charts import charts
-from reports.charts.heat import legend, shade
+from reports.charts.grid import legend, shade
 from reports.charts.study_findings import answer, findings
 from reports.charts.styles import Mark
 from reports.environment import environment

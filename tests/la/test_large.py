@@ -27,8 +27,7 @@ from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
 from methods.la.sources.arcs import NEAR, ArcPaths, RestoredFriction
 from methods.la.sources.budget import Budget, SearchLimits
-from methods.la.sources.search import Choices, Search
-from methods.la.sources.source import Source
+from methods.la.sources.search import Choices, Search, Source
 from methods.la.sources.springs import LowPrestress
 from tests.la.bodies import running_bond
 

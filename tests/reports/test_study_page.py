@@ -11,7 +11,7 @@ from harness.engine.sweep import statistics
 from harness.engine.sweep.frame import tidy
 from harness.model.method import Traits
 from harness.model.method_registry import load_method
-from reports.charts.heat import shade
+from reports.charts.grid import shade
 from reports.charts.study_findings import answer, findings
 from reports.charts.styles import mark_named
 from reports.page.study_page import StudyPage, render

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.optional import optional
+from harness.model.errors import optional
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration

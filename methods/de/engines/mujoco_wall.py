@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
-from harness.model.optional import optional
+from harness.model.errors import optional
 from methods.de.engines.engine import motion_units
 from methods.de.engines.mass_scaling import MassScaling, courses, is_chain, lighter_upwards, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import FloatArray
+from harness.model.errors import optional
 from harness.model.joint_law import block_diagonal
-from harness.model.optional import optional
 from methods.la.core.exact import exact_forces, exact_mechanism
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.errors import optional
 from harness.model.joint_law import block_diagonal
-from harness.model.optional import optional
 from methods.numerics.stress_blocks import BlockLimit, crushing_force, kinematic_multiplier
 
 

@@ -22,8 +22,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.deadline import Deadline, OutOfTime
+from harness.model.errors import optional
 from harness.model.joint_law import block_diagonal
-from harness.model.optional import optional
 from methods.la.core.problem import Problem
 from methods.numerics.failures import sparse_lu
 

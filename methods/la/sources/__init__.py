@@ -12,8 +12,7 @@ from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.mechanisms import GivenMechanisms
 from methods.la.sources.paths import AssociatedForces, CentralPath, OtherWeights, ReducedFriction, TrescaMechanisms
-from methods.la.sources.search import Search
-from methods.la.sources.source import Source
+from methods.la.sources.search import Search, Source
 from methods.la.sources.springs import AnalyticCentre, LowPrestress, ShiftedAssociated
 from methods.numerics.failures import SingularMatrix
 

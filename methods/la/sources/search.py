@@ -1,4 +1,4 @@
-"""The search for low collapse states: exact programme on a mechanism, ray descent.
+"""The search for low collapse states: exact programme on a mechanism, ray descent; and what its sources meet.
 
 Without loss of generality the mechanism is an extreme ray of {g >= 0, C u = E g}. For a mechanism that moves in the
 contacts J the best multiplier is the linear programme lambda(J) = min lambda s.t. equilibrium, S r >= 0, y_J = 0.
@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -305,3 +306,20 @@ class Search:
 
 def _key(moving: BoolArray) -> bytes:
     return np.packbits(moving).tobytes()
+
+
+class Source(Protocol):
+    """A way to collapse states of a wall. What it was tuned with are fields of the object, so that others can be set.
+
+    A source draws from the budget of the search, and stops where that ends or where what is known makes it needless.
+    """
+
+    @property
+    def name(self) -> str:
+        """What the source is called in results: words of the field."""
+
+    def applies(self, problem: Problem) -> bool:
+        """Whether it can lead to a state of this wall and is worth its work at this size."""
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """Exact collapse states, in the order found; those that are lower than all before are noted by the caller."""
