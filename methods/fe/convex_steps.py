@@ -24,33 +24,24 @@ from methods.numerics.vectors import largest
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.path_record import PathRecord
 
-
-@dataclass(frozen=True)
-class TrescaTuning:
-    """How the multiplier marches up, and how friction limits are iterated.
-
-    Attributes:
-        longer: factor on the step after one that settled; furthest: first steps after which nothing is left to find.
-        kept: first steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to
-            the load.
-        damped: share of a change of the limits that is taken where the whole of it does not settle.
-        repeated: change of friction limits, in largest loads of a block, at which they count as repeated.
-        nearer: share of the least change so far that a further one must be below to count as nearer.
-        runaway: displacements, in load scales, beyond which there is no minimum.
-        lost: share of the multiplier within which limits that do not settle are taken for the collapse above them.
-        fine: multiples of `repeated` at which the live load has to stand to the dead load for a bracket to mean
-            anything.
-    """
-
-    longer: float = 1.5
-    furthest: float = 1e6
-    kept: float = 100.0
-    damped: float = 0.5
-    repeated: float = 1e-5
-    nearer: float = 0.9
-    runaway: float = 1e6
-    lost: float = 0.01
-    fine: float = 1000.0
+_LONGER = 1.5
+"""Factor on the step after one that settled."""
+_FURTHEST = 1e6
+"""First steps after which nothing is left to find."""
+_KEPT = 100.0
+"""First steps beyond which forces are no longer kept while no step fails: OSQP's accuracy is relative to the load."""
+_DAMPED = 0.5
+"""Share of a change of the limits that is taken where the whole of it does not settle."""
+_REPEATED = 1e-5
+"""Change of friction limits, in largest loads of a block, at which they count as repeated."""
+_NEARER = 0.9
+"""Share of the least change so far that a further one must be below to count as nearer."""
+_RUNAWAY = 1e6
+"""Displacements, in load scales, beyond which there is no minimum."""
+_LOST = 0.01
+"""Share of the multiplier within which limits that do not settle are taken for the collapse above them."""
+_FINE = 1000.0
+"""Multiples of `_REPEATED` at which the live load has to stand to the dead load for a bracket to mean anything."""
 
 
 @dataclass(frozen=True)
@@ -181,21 +172,19 @@ def bracket_collapse(
     resolution: float,
     fixed_points: int,
     accuracy: float = 1e-6,
-    options: TrescaTuning = TrescaTuning(),
 ) -> ConvexResult:
     """March the multiplier up and bisect the step at which the fixed point is lost.
 
     Args:
         first_step: first step of the multiplier; resolution: width of the bracket at which to stop, relative.
         fixed_points: Tresca iterations in a row that may bring a step no nearer; accuracy: of OSQP.
-        options: of the march and of the iteration.
     """
     programme = _TrescaProgramme(model, accuracy)
     record = PathRecord()
-    limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points, options)
+    limit = _settle(programme, 0.0, np.zeros(model.n_points), fixed_points)
     if limit is None:
         rough = model.law.dissipated(np.full(model.n_points, np.abs(model.dead).sum()))
-        limit = _settle(programme, 0.0, rough, 2 * fixed_points, options, options.damped)
+        limit = _settle(programme, 0.0, rough, 2 * fixed_points, _DAMPED)
     if limit is None:
         programme.solve(0.0, rough)
         return ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
@@ -207,27 +196,23 @@ def bracket_collapse(
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
         goal = lower + step if upper is None else 0.5 * (lower + upper)
         ahead = np.maximum(limit + (goal - lower) * growth, 0.0)
-        settled = _settle(programme, goal, ahead, fixed_points, options)
+        settled = _settle(programme, goal, ahead, fixed_points)
         if settled is None:
-            settled = _settle(
-                programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, options, options.damped
-            )
+            settled = _settle(programme, goal, 2.0 * np.maximum(ahead, limit), 2 * fixed_points, _DAMPED)
         if settled is None:
             upper, falls = goal, goal if programme.without_minimum else falls
         else:
             growth = (settled - limit) / (goal - lower)
             lower, limit = goal, settled
-            if goal <= options.kept * first_step or upper is not None:
+            if goal <= _KEPT * first_step or upper is not None:
                 forces, at = programme.forces(limit), goal
             record.add(goal, 0.0, 0, 0)
-            step *= options.longer
-        if upper is None and lower > options.furthest * first_step:
+            step *= _LONGER
+        if upper is None and lower > _FURTHEST * first_step:
             break
-    settles = upper is None or falls <= upper * (1.0 + options.lost)
-    fine = upper is None or upper * largest(model.live) >= options.fine * options.repeated * largest(model.dead)
-    return ConvexResult(
-        lower, upper, record, programme.programmes, True, forces, at, settles, fine, repeated=options.repeated
-    )
+    settles = upper is None or falls <= upper * (1.0 + _LOST)
+    fine = upper is None or upper * largest(model.live) >= _FINE * _REPEATED * largest(model.dead)
+    return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles, fine, repeated=_REPEATED)
 
 
 def _settle(
@@ -235,7 +220,6 @@ def _settle(
     multiplier: float,
     limit: FloatArray,
     count: int,
-    options: TrescaTuning,
     share: float = 1.0,
 ) -> FloatArray | None:
     """Friction limits (P,) that repeat at this multiplier, or None; `share` of each change of the limits is taken.
@@ -248,14 +232,14 @@ def _settle(
     while left:
         model.deadline.ask()
         answer = programme.solve(multiplier, limit)
-        if answer is None or np.abs(answer[0]).max() > options.runaway * scale:
+        if answer is None or np.abs(answer[0]).max() > _RUNAWAY * scale:
             programme.without_minimum |= answer is not None
             programme.restart()
             return None
         new = model.law.dissipated(answer[1])
         change = float(np.abs(new - limit).max())
-        if change < options.repeated * share * scale:
+        if change < _REPEATED * share * scale:
             return new
-        least, left = (change, count) if change < options.nearer * least else (least, left - 1)
+        least, left = (change, count) if change < _NEARER * least else (least, left - 1)
         limit = limit + share * (new - limit)
     return None

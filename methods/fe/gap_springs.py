@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
@@ -39,45 +39,37 @@ from methods.springs.rest.equilibrium import equilibrium, gravity_state
 from methods.springs.rest.newton import Equilibrium
 from methods.springs.warm_up import load_kernels
 
+_FEWEST = 2000
+"""Events up to which every history is traced."""
+_FIRST = 30
+"""Events more for every gap point on the first history. Two walls of 400 irregular blocks come to a plateau after 20
+and 26 events a point. On large walls the first has no more than the others: those in courses need 1 to 3.5 a point."""
+_FURTHER = 5
+"""The same on histories after the first."""
+_FEWEST_BESIDE = 500
+"""Events above which, once a history reached its plateau, the next are given up."""
+_MULTIPLE = 4
+"""Multiple of the events of that history above which they are given up."""
+_INTERVALS = (0.0, 0.01, 0.002)
+"""Of commits, as shares of the multiplier, by default."""
+_THREE = 1200
+"""Blocks above which only the first of these intervals has a history."""
+_AGREEING = 1e-3
+"""Relative difference of the first two plateaus up to which no third history is traced by default: published values of
+gap springs agree within as much."""
+
 load_kernels()
-
-
-@dataclass(frozen=True)
-class BreakpointLimits:
-    """Events up to which histories are traced, and how many histories there are.
-
-    Attributes:
-        fewest: of every history; first, further: for every gap point more on the first and on those after it. Two
-            walls of 400 irregular blocks come to a plateau after 20 and 26 events a point. On large walls the first
-            has no more than the others: those in courses need 1 to 3.5 a point.
-        fewest_beside, multiple: once a history reached its plateau, the next are given up above so many events and
-            this multiple of its own.
-        intervals: of commits, as shares of the multiplier, by default; only the first of them above `three` blocks.
-        agreeing: relative difference of the first two plateaus up to which no third history is traced by default:
-            published values of gap springs agree within as much.
-    """
-
-    fewest: int = 2000
-    first: int = 30
-    further: int = 5
-    fewest_beside: int = 500
-    multiple: int = 4
-    intervals: tuple[float, ...] = (0.0, 0.01, 0.002)
-    three: int = 1200
-    agreeing: float = 1e-3
 
 
 class GapSprings(Solver):
     """Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`).
 
     Args:
-        limits: on breakpoints and histories; histories: what is tried where one is lost.
+        histories: what is tried where one is lost.
     """
 
-    def __init__(
-        self, limits: BreakpointLimits = BreakpointLimits(), histories: HistoryTuning = HistoryTuning()
-    ) -> None:
-        self._limits, self._histories = limits, histories
+    def __init__(self, histories: HistoryTuning = HistoryTuning()) -> None:
+        self._histories = histories
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
@@ -88,7 +80,7 @@ class GapSprings(Solver):
                 "brittle joints that crush are not followed: leave out the compressive strength, or the brittleness"
             )
         if assembly.breaks:
-            events = self._limits.fewest + self._limits.first * settings.points * assembly.n_interfaces
+            events = _FEWEST + _FIRST * settings.points * assembly.n_interfaces
             most = settings.max_events or events
             return brittle_answer(assembly, settings, _unit(assembly), most, self._histories)
         return by_component(assembly, lambda part: self._of_component(part, settings))
@@ -121,13 +113,11 @@ class GapSprings(Solver):
                 return gravity_failure(model, gravity)
         results, start = list[HistoryResult](), gravity
         scale = _unit(model.assembly)
-        events, histories = self._limits, self._histories
-        limits = [
-            settings.max_events or events.fewest + count * model.n_points for count in (events.first, events.further)
-        ]
+        histories = self._histories
+        limits = [settings.max_events or _FEWEST + count * model.n_points for count in (_FIRST, _FURTHER)]
         limit = limits[model.assembly.n_free > histories.large]
-        for step in _chosen_histories(model, settings, events):
-            if settings.histories is None and _agree(results, events.agreeing):
+        for step in _chosen_histories(model, settings):
+            if settings.histories is None and _agree(results, _AGREEING):
                 break
             plan = HistoryPlan(step, scale, limit, load_steps=settings.load_steps, options=histories)
             result = trace_history(model, factor, start, plan)
@@ -140,7 +130,7 @@ class GapSprings(Solver):
                 scale = result.record.peak
             elif result.state is not None:
                 scale = abs(result.state.multiplier) or 1.0
-                limit = min(limit, events.fewest_beside + events.multiple * result.record.events)
+                limit = min(limit, _FEWEST_BESIDE + _MULTIPLE * result.record.events)
         answer = collapse_answer(model, results, factor.factorisations, settings.load_steps)
         lost = results and all(r.state is None and r.end is PathEnd.BREAKDOWN for r in results)
         if lost and model.assembly.n_free <= histories.large:
@@ -169,12 +159,12 @@ def _by_displacement_control(model: WallModel, factor: Factor, gravity: Equilibr
     return single_state_answer(model, result.state, sentence, result.record, details, result.iterations)
 
 
-def _chosen_histories(model: WallModel, settings: GapSpringsSettings, limits: BreakpointLimits) -> tuple[float, ...]:
+def _chosen_histories(model: WallModel, settings: GapSpringsSettings) -> tuple[float, ...]:
     """The commit intervals to run: as set, or by the size of the wall; none where joints dilate."""
     if settings.histories is not None:
         return settings.histories
-    updates = model.assembly.n_free <= limits.three and not model.dilates
-    return limits.intervals if updates else limits.intervals[:1]
+    updates = model.assembly.n_free <= _THREE and not model.dilates
+    return _INTERVALS if updates else _INTERVALS[:1]
 
 
 def _agree(results: list[HistoryResult], within: float) -> bool:

@@ -22,46 +22,30 @@ from methods.springs.path.path_record import PathRecord, PathSnapshot
 from methods.springs.path.plateau import PlateauState, finish
 from methods.springs.rest.newton import Equilibrium, newton, settled
 
-
-@dataclass(frozen=True)
-class LoadControl:
-    """Steps of the multiplier.
-
-    Attributes:
-        iterations: Newton iterations of a step, at most.
-        longer: factor on the step after one that converged, before the first that did not; shorter: after each of
-            those.
-        furthest: first steps after which the load is taken to go on to any multiplier.
-    """
-
-    iterations: int = 25
-    longer: float = 1.5
-    shorter: float = 0.5
-    furthest: float = 1e6
-
-
-@dataclass(frozen=True)
-class DisplacementControl:
-    """Steps of a prescribed displacement.
-
-    Attributes:
-        first: step, as a share of the way under load control; least: of the steps, as a share of that.
-        longer, shorter: factors on the step after one that converged and one that did not.
-        blocks: whose displacement is controlled, one after the other, where no step however short converges.
-        iterations: Newton iterations of a step, at most.
-        damped: least share of a Newton step that is taken where states come round in a cycle; each repetition halves
-            the share.
-        flat: change of the multiplier in a step, relative to it, up to which the wall moves at a constant one.
-    """
-
-    first: float = 0.02
-    least: float = 1e-6
-    longer: float = 1.5
-    shorter: float = 0.25
-    blocks: int = 6
-    iterations: int = 60
-    damped: float = 0.05
-    flat: float = 1e-8
+_LOAD_ITERATIONS = 25
+"""Newton iterations of a step of the multiplier, at most."""
+_LOAD_LONGER = 1.5
+"""Factor on that step after one that converged, before the first that did not."""
+_LOAD_SHORTER = 0.5
+"""Factor on it after each that did not converge."""
+_FURTHEST = 1e6
+"""First steps after which the load is taken to go on to any multiplier."""
+_FIRST = 0.02
+"""Step of a prescribed displacement, as a share of the way under load control."""
+_LEAST = 1e-6
+"""Of these steps, as a share of that."""
+_LONGER = 1.5
+"""Factor on the step after one that converged."""
+_SHORTER = 0.25
+"""Factor on it after one that did not."""
+_BLOCKS = 6
+"""Whose displacement is controlled, one after the other, where no step however short converges."""
+_ITERATIONS = 60
+"""Newton iterations of such a step, at most."""
+_DAMPED = 0.05
+"""Least share of a Newton step that is taken where states come round in a cycle; each repetition halves the share."""
+_FLAT = 1e-8
+"""Change of the multiplier in a step, relative to it, up to which the wall moves at a constant one."""
 
 
 @dataclass(frozen=True)
@@ -98,29 +82,26 @@ def march(
     first_step: float,
     cuts: int,
     displacement_steps: int,
-    loads: LoadControl = LoadControl(),
-    displacements: DisplacementControl = DisplacementControl(),
 ) -> IncrementalResult:
     """Load control from gravity, then displacement control.
 
     Args:
         first_step: first step of the multiplier; cuts: how many times a step is halved before load control stops;
         displacement_steps: steps of displacement control, each 1.5 times the last that converged.
-        loads, displacements: how the steps are taken.
     """
     record = PathRecord()
     point, step, iterations, cut = _StepPoint(gravity.u, 0.0, gravity.state), first_step, 0, 0
-    while cut <= cuts and point.multiplier < loads.furthest * first_step:
-        answer = newton(model, factor, point.u, point.multiplier + step, model.history, loads.iterations)
+    while cut <= cuts and point.multiplier < _FURTHEST * first_step:
+        answer = newton(model, factor, point.u, point.multiplier + step, model.history, _LOAD_ITERATIONS)
         iterations += answer.iterations
         if not answer.found:
-            step *= loads.shorter
+            step *= _LOAD_SHORTER
             cut += 1
             continue
         point = _StepPoint(answer.u, point.multiplier + step, answer.state)
         _note(record, model, point)
         if cut == 0:
-            step *= loads.longer
+            step *= _LOAD_LONGER
     reached = point.multiplier
     record.peak = reached
     if cut <= cuts:
@@ -130,7 +111,7 @@ def march(
         with suppress(SingularTangent):
             factor.refactor(point.state, regularised=True)
             travel = step * factor.solve(model.live)
-    state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record, displacements)
+    state, end, spent = _displacement_control(model, factor, point, travel, displacement_steps, record)
     sentence = f"displacement control reached a plateau, where load control stopped at {reached:.6g}"
     if state is None:
         sentence = (
@@ -147,7 +128,6 @@ def _displacement_control(
     travel: FloatArray,
     steps: int,
     record: PathRecord,
-    options: DisplacementControl,
 ) -> tuple[PlateauState | None, float, int]:
     """The collapse state that displacement control leads to, or None; the last multiplier; Newton iterations.
 
@@ -155,28 +135,28 @@ def _displacement_control(
         point: where load control stopped; travel: (N,) how far the wall has moved under the live load.
         steps: at most; record: gets the points that converge.
     """
-    origin, iterations, controls = point.u - travel, 0, options.blocks
+    origin, iterations, controls = point.u - travel, 0, _BLOCKS
     direction = travel
     control = _farthest(direction)
-    push = first = options.first * float(control @ direction)
+    push = first = _FIRST * float(control @ direction)
     for _ in range(steps if first > 0.0 else 0):
-        moved, spent = _controlled(model, factor, point, control, float(control @ point.u) + push, options)
+        moved, spent = _controlled(model, factor, point, control, float(control @ point.u) + push)
         iterations += spent
         if moved is None:
-            push *= options.shorter
-            if push < options.least * first:
+            push *= _SHORTER
+            if push < _LEAST * first:
                 other = _farthest(direction)
                 controls -= 1
                 if controls == 0 or np.array_equal(other, control):
                     break
                 control = other
-                push = first = options.first * abs(float(control @ (point.u - origin)))
+                push = first = _FIRST * abs(float(control @ (point.u - origin)))
             continue
-        flat = abs(moved.multiplier - point.multiplier) <= options.flat * max(1.0, abs(point.multiplier))
+        flat = abs(moved.multiplier - point.multiplier) <= _FLAT * max(1.0, abs(point.multiplier))
         direction, point = moved.u - point.u, moved
         _note(record, model, point)
         record.peak = max(record.peak, point.multiplier)
-        push *= options.longer
+        push *= _LONGER
         collapse = _collapse(model, point, direction) if flat else None
         if collapse is not None:
             return collapse, point.multiplier, iterations
@@ -199,16 +179,16 @@ def _farthest(motion: FloatArray) -> FloatArray:
 
 
 def _controlled(
-    model: WallModel, factor: Factor, point: _StepPoint, control: FloatArray, goal: float, options: DisplacementControl
+    model: WallModel, factor: Factor, point: _StepPoint, control: FloatArray, goal: float
 ) -> tuple[_StepPoint | None, int]:
     """Equilibrium at a prescribed displacement control'u = goal, None where Newton finds none; and its iterations."""
     u, multiplier, state = point.u, point.multiplier, point.state
     scale, share = load_scale(model, multiplier), 1.0
     seen: set[bytes] = set()
-    for count in range(options.iterations):
+    for count in range(_ITERATIONS):
         model.deadline.ask()
         if state.tobytes() in seen:
-            share = max(0.5 * share, options.damped)
+            share = max(0.5 * share, _DAMPED)
         seen.add(state.tobytes())
         try:
             factor.refactor(state, regularised=True)
@@ -231,7 +211,7 @@ def _controlled(
             continue
         u, multiplier = u + share * step, multiplier + share * rise
         state = landed if share == 1.0 else model.states(u, model.history)
-    return None, options.iterations
+    return None, _ITERATIONS
 
 
 def _collapse(model: WallModel, point: _StepPoint, direction: FloatArray) -> PlateauState | None:

@@ -219,7 +219,7 @@ class _Piece:
         model, state = self.point.model, self.point.rest.state
         strain, elastic = strain_rates(*self.rates, model.kt, model.lift, state)
         fastest = max(strain, 1.0)  # the speed of the supports: where the wall goes with them nothing strains
-        rounding = model.options.mechanism.elastic * fastest
+        rounding = model.options.elastic * fastest
         parting = self.rates[0] - model.lift * abs(self.rates[1])
         onward = np.where(state == SLIP_PLUS, 1.0, -1.0) * self.rates[1] / model.kt
         least = min(parting[state == OPEN].min(initial=0.0), onward[state >= SLIP_PLUS].min(initial=0.0))

@@ -9,8 +9,6 @@ fail while the matrix is symmetric and definite; sliding makes it unsymmetric, a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
@@ -18,18 +16,10 @@ from scipy.sparse.linalg import splu
 from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.block_kernels import factorise, substitute, substitute_many
 
-
-@dataclass(frozen=True)
-class Supernodes:
-    """Which columns of a factor are kept together.
-
-    Attributes:
-        widest: blocks of unknowns at most: wider ones spend their time inside the diagonal.
-        padding: share of zeros that one may hold for the sake of being wider.
-    """
-
-    widest: int = 8
-    padding: float = 0.3
+_WIDEST = 8
+"""Blocks of unknowns in a supernode at most: wider ones spend their time inside the diagonal."""
+_PADDING = 0.3
+"""Share of zeros that one may hold for the sake of being wider."""
 
 
 class BlockPattern:
@@ -45,10 +35,10 @@ class BlockPattern:
         offset: (k + 1,) where its values start; diagonal: (3 n,) where the entries of the diagonal are.
     """
 
-    def __init__(self, first: IntArray, second: IntArray, n: int, supernodes: Supernodes = Supernodes()) -> None:
+    def __init__(self, first: IntArray, second: IntArray, n: int) -> None:
         """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in _postorder."""
         below, _ = _fill(first, second, n)
-        start, rows = _supernodes(below, supernodes)
+        start, rows = _supernodes(below)
         self.n = n
         self.start = np.array(start)
         width = np.diff(self.start)
@@ -164,7 +154,7 @@ def _fill(first: IntArray, second: IntArray, n: int) -> tuple[list[set[int]], li
     return below, parent
 
 
-def _supernodes(below: list[set[int]], options: Supernodes) -> tuple[list[int], list[list[int]]]:
+def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:
     """Gather columns (whose rows are given) into supernodes: the first column of each and its end, and its rows."""
     start, rows, true = [0], [below[0]], [len(below[0])]
     for j in range(1, len(below)):
@@ -172,7 +162,7 @@ def _supernodes(below: list[set[int]], options: Supernodes) -> tuple[list[int], 
         merged = (rows[-1] | below[j]) - {j}
         entries = true[-1] + len(below[j]) + width
         size = (width + 1) * len(merged) + width * (width + 1) // 2
-        if j in rows[-1] and width < options.widest and size <= (1.0 + options.padding) * entries:
+        if j in rows[-1] and width < _WIDEST and size <= (1.0 + _PADDING) * entries:
             rows[-1] = merged
             true[-1] = entries
         else:

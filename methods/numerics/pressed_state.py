@@ -22,25 +22,16 @@ from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.joint_law import block_diagonal
 from methods.numerics.stress_blocks import pressed_shares
 
-
-@dataclass(frozen=True)
-class StateTolerances:
-    """When the forces of a state are exact.
-
-    Attributes:
-        moving: rate of a joint, beside the fastest, above which it moves; mechanisms of methods are good to 1e-8. Also
-            the slack beside the greatest force up to which a limit is reached, where those of chords are good to 1e-10.
-        settled: change of a pressed share at which the tangents are those at the forces: the error is its square.
-        rounds: of tangents, at most. Each squares the change.
-        violation: of a limit, relative to the terms beside it, that forces and mechanism may have: half of what the
-            judge tolerates. Where more limits meet in one point than the mechanism has joints, as in a symmetric arch,
-            vertices keep them to 1e-10 only, and so do mechanisms in which joints open that press nothing.
-    """
-
-    moving: float = 1e-7
-    settled: float = 1e-8
-    rounds: int = 12
-    violation: float = 5e-10
+_MOVING = 1e-7
+"""Rate of a joint, beside the fastest, above which it moves; mechanisms of methods are good to 1e-8."""
+_SETTLED = 1e-8
+"""Change of a pressed share at which the tangents are those at the forces: the error is its square."""
+_ROUNDS = 12
+"""Of tangents, at most. Each squares the change."""
+_VIOLATION = 5e-10
+"""Of a limit, relative to the terms beside it, that forces and mechanism may have: half of what the judge tolerates.
+Where more limits meet in one point than the mechanism has joints, as in a symmetric arch, vertices keep them to 1e-10
+only, and so do mechanisms in which joints open that press nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +43,11 @@ class PressedState:
     mechanism: FloatArray
 
 
-def moving_rows(wall: Assembly, mechanism: FloatArray, options: StateTolerances = StateTolerances()) -> BoolArray:
+def moving_rows(wall: Assembly, mechanism: FloatArray) -> BoolArray:
     """(m, 4) rows of the joint law along which the joints of a wall move in a mechanism (n, 3)."""
     strains = (wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3)
     rates = wall.law.rates(strains)
-    return np.asarray(rates > options.moving * abs(strains).max())
+    return np.asarray(rates > _MOVING * abs(strains).max())
 
 
 def exact_state(
@@ -64,7 +55,6 @@ def exact_state(
     forces: FloatArray,
     moving: BoolArray,
     empty: BoolArray | None = None,
-    options: StateTolerances = StateTolerances(),
 ) -> PressedState | None:
     """The collapse state in which the rows `moving` (m, 4) move, with forces near these (m, 3); None without any.
 
@@ -74,17 +64,17 @@ def exact_state(
     known, reached = forces, moving
     if empty is not None:
         reached = moving | (empty[:, None] & np.array([True, True, False, False]))
-    for _ in range(options.rounds):
+    for _ in range(_ROUNDS):
         share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, reached, forces, options)
+        found = _nearest_forces(assembly, share, reached, forces)
         if found is None:
             return None
         known, multiplier = found
-        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= options.settled:
+        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= _SETTLED:
             break
     else:
         return None
-    mechanism = _mechanism(assembly, pressed_shares(assembly, known), moving, options)
+    mechanism = _mechanism(assembly, pressed_shares(assembly, known), moving)
     return None if mechanism is None else PressedState(multiplier, known, mechanism)
 
 
@@ -100,18 +90,16 @@ def _tangents(assembly: Assembly, share: FloatArray) -> tuple[FloatArray, FloatA
     return rows, constant, flow
 
 
-def held_forces(
-    assembly: Assembly, forces: FloatArray, multiplier: float, options: StateTolerances = StateTolerances()
-) -> FloatArray | None:
+def held_forces(assembly: Assembly, forces: FloatArray, multiplier: float) -> FloatArray | None:
     """The contact forces (m, 3) within the stress blocks that bear a multiplier, near others; None without any."""
     known, rests = forces, np.zeros((assembly.n_interfaces, 4), dtype=bool)
-    for _ in range(options.rounds):
+    for _ in range(_ROUNDS):
         share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, rests, forces, options, multiplier)
+        found = _nearest_forces(assembly, share, rests, forces, multiplier)
         if found is None:
             return None
         known = found[0]
-        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= options.settled:
+        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= _SETTLED:
             return known
     return None
 
@@ -121,7 +109,6 @@ def _nearest_forces(
     share: FloatArray,
     reached: BoolArray,
     near: FloatArray,
-    options: StateTolerances,
     multiplier: float | None = None,
 ) -> tuple[FloatArray, float] | None:
     """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given.
@@ -158,7 +145,7 @@ def _nearest_forces(
     )
     status, _, _ = programme.run()
     vertex = programme.vertex() if status == "optimal" else None
-    if vertex is None or not vertex.primal <= options.violation:
+    if vertex is None or not vertex.primal <= _VIOLATION:
         return None
     return vertex.value[: 3 * m].reshape(-1, 3) * unit, float(vertex.value[3 * m]) * assembly.load_unit
 
@@ -193,7 +180,7 @@ def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> 
     return mechanism, float(abs(value[3 * n : 3 * n + 4 * m] - target).max())
 
 
-def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray, options: StateTolerances) -> FloatArray | None:
+def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> FloatArray | None:
     """A mechanism (n, 3) of positive live work whose joints move along the rows `moving` (m, 4) alone; None if none."""
     from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -213,7 +200,7 @@ def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray, options
     )
     status, _, _ = programme.run()
     vertex = programme.vertex() if status == "optimal" else None
-    if vertex is None or not vertex.primal <= options.violation:
+    if vertex is None or not vertex.primal <= _VIOLATION:
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (vertex.value[: 3 * n] * column).reshape(-1, 3)

@@ -24,24 +24,16 @@ import scipy.sparse as sp
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from methods.numerics.shear_rows import COST, least_shear_slacks, rows_of_blocks, shear_limits
 
-
-@dataclass(frozen=True)
-class ChordTolerances:
-    """How points on the parabolas are added.
-
-    Attributes:
-        first: shares of F0 that both programmes begin with, besides 0 and 1.
-        gap: of the two multipliers, relative to their size or to the load unit, at which they agree to rounding.
-        exact: the same from which on vertices are computed to rounding instead of as HiGHS gives them.
-        new: distance of a further point from those there are, as a share of F0.
-        rounds: at most. Each round squares the gap, or quarters it where a hinge lies between two points.
-    """
-
-    first: tuple[float, ...] = (0.125, 0.25, 0.5)
-    gap: float = 1e-10
-    exact: float = 1e-6
-    new: float = 1e-13
-    rounds: int = 40
+_FIRST = (0.125, 0.25, 0.5)
+"""Shares of F0 that both programmes begin with, besides 0 and 1."""
+_GAP = 1e-10
+"""Of the two multipliers, relative to their size or to the load unit, at which they agree to rounding."""
+_EXACT = 1e-6
+"""The same from which on vertices are computed to rounding instead of as HiGHS gives them."""
+_NEW = 1e-13
+"""Distance of a further point from those there are, as a share of F0."""
+_ROUNDS = 40
+"""Of added points, at most. Each squares the gap, or quarters it where a hinge lies between two points."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,14 +78,13 @@ def greatest_by_chords(
     dead: FloatArray,
     live: FloatArray,
     most: float = np.inf,
-    options: ChordTolerances = ChordTolerances(),
 ) -> BlockLimit:
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by linear programmes with a known gap."""
-    programme = _LineProgramme(assembly, dead, live, most, options)
+    programme = _LineProgramme(assembly, dead, live, most)
     best, upper, motion = BlockLimit("unknown"), np.inf, None
     size = programme.per_unit
-    for rounds in range(1, options.rounds + 1):
-        exact = upper - best.multiplier <= options.exact * size
+    for rounds in range(1, _ROUNDS + 1):
+        exact = upper - best.multiplier <= _EXACT * size
         outer = programme.solve(*programme.tangents(), exact)
         if isinstance(outer, str):
             return BlockLimit(outer, rounds=rounds)
@@ -108,7 +99,7 @@ def greatest_by_chords(
         best = replace(best, mechanism=motion, upper=upper, rounds=rounds)
         at_most = best.forces is not None and best.multiplier >= most
         size = max(programme.per_unit, abs(upper) if upper < np.inf else 0.0)
-        if at_most or upper - best.multiplier <= options.gap * size:
+        if at_most or upper - best.multiplier <= _GAP * size:
             break
     return best
 
@@ -137,10 +128,7 @@ class _Found:
 class _LineProgramme:
     """Statics of a wall with lines in place of the parabolas of its k joints that crush; two ends a joint, 2k ends."""
 
-    def __init__(
-        self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float, options: ChordTolerances
-    ) -> None:
-        self._options = options
+    def __init__(self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float) -> None:
         self._assembly, m, n = assembly, assembly.n_interfaces, assembly.n_free
         self._column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
         own, acting = dead[assembly.free].ravel() * self._column, live[assembly.free].ravel() * self._column
@@ -155,7 +143,7 @@ class _LineProgramme:
         self._first, self._full = 3 * np.repeat(joints, 2), np.repeat(full / self._unit, 2)
         self._tension = 2.0 * np.repeat(self._law.constant[joints, 0], 2)
         self._own = self._first + np.tile([0, 1], len(joints))
-        start = np.array([0.0, *options.first, 1.0])
+        start = np.array([0.0, *_FIRST, 1.0])
         self._points = [start * full for full in self._full]
 
     def tangents(self) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -175,7 +163,7 @@ class _LineProgramme:
         force = (forces / self._unit).ravel()
         at = np.clip(force[self._first] + force[self._first + 1] + self._tension, 0.0, self._full)
         for end, (points, full, new) in enumerate(zip(self._points, self._full, at, strict=True)):
-            if abs(points - new).min() > self._options.new * full:
+            if abs(points - new).min() > _NEW * full:
                 self._points[end] = np.sort(np.append(points, new))
 
     def solve(self, end: IntArray, a: FloatArray, b: FloatArray, exact: bool) -> _Found | str:

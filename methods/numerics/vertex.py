@@ -22,26 +22,18 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.numerics.failures import NumericalFailure, SingularMatrix, sparse_lu
 from methods.numerics.silent_highs import SilentHighs
 
-
-@dataclass(frozen=True)
-class VertexTolerances:
-    """How a vertex is refined, and what is rounding in it.
-
-    Attributes:
-        accurate: violation of a bound, relative to the terms beside it, that is rounding.
-        rounds: refinements of a linear system at most, and magnifications of a programme.
-        least_term, least_speed: terms below this share of the largest bound, and of the largest terms of a reduced
-            cost, count as this share.
-        magnified: largest factor by which violations are magnified.
-        cut_off: magnified reduced costs beyond this are cut off: they are far from zero either way.
-    """
-
-    accurate: float = 1e-12
-    rounds: int = 6
-    least_term: float = 1e-3
-    least_speed: float = 1e-5
-    magnified: float = 1e14
-    cut_off: float = 1e7
+_ACCURATE = 1e-12
+"""Violation of a bound, relative to the terms beside it, that is rounding."""
+_ROUNDS = 6
+"""Refinements of a linear system at most, and magnifications of a programme."""
+_LEAST_TERM = 1e-3
+"""Terms below this share of the largest bound count as this share."""
+_LEAST_SPEED = 1e-5
+"""Terms below this share of the largest terms of a reduced cost count as this share."""
+_MAGNIFIED = 1e14
+"""Largest factor by which violations are magnified."""
+_CUT_OFF = 1e7
+"""Magnified reduced costs beyond this are cut off: they are far from zero either way."""
 
 
 LOWER, BASIC, UPPER, ZERO = (
@@ -96,7 +88,6 @@ class StandardForm:
         matrix: (r, c) A.
         cost: (c,); column: lower and upper bounds (c,); row: lower and upper bounds (r,).
         groups: (r,) rows of the same number measure violations by the largest terms of any of them.
-        tolerances: of its vertices.
     """
 
     def __init__(
@@ -106,9 +97,7 @@ class StandardForm:
         column: tuple[FloatArray, FloatArray],
         row: tuple[FloatArray, FloatArray],
         groups: IntArray | None = None,
-        tolerances: VertexTolerances = VertexTolerances(),
     ) -> None:
-        self._tolerances = tolerances
         self._rows, self._columns = matrix.shape
         own = np.arange(self._rows, dtype=matrix.indices.dtype)
         parts = (
@@ -129,8 +118,8 @@ class StandardForm:
     def vertex(self, status: IntArray) -> Vertex | None:
         """The optimal vertex that a basis (c + r,) leads to; None if it is singular or leads nowhere."""
         best = solution = self._solution(status)
-        for _ in range(self._tolerances.rounds):
-            if solution is None or _worst(solution) <= self._tolerances.accurate:
+        for _ in range(_ROUNDS):
+            if solution is None or _worst(solution) <= _ACCURATE:
                 break
             solution = self._magnified(solution)
             if solution is not None and best is not None and _worst(solution) < _worst(best):
@@ -144,8 +133,8 @@ class StandardForm:
             best.reduced[own],
             best.primal,
             best.dual_violation,
-            best.primal <= self._tolerances.accurate,
-            _worst(best) <= self._tolerances.accurate,
+            best.primal <= _ACCURATE,
+            _worst(best) <= _ACCURATE,
         )
 
     def _solution(self, status: IntArray) -> _Solution | None:
@@ -156,7 +145,7 @@ class StandardForm:
         if int(basic.sum()) != self._rows:
             return None
         try:
-            basis = _Basis(self._matrix[:, basic], self._tolerances.rounds)
+            basis = _Basis(self._matrix[:, basic], _ROUNDS)
             value[basic] = basis.solved(-_extended_product(self._by_row, value))
             dual = basis.multipliers(self._cost[basic])
         except NumericalFailure:
@@ -175,8 +164,8 @@ class StandardForm:
             reduced,
             outside,
             wrong,
-            _relative(outside, self._terms_beside(value), self._tolerances.least_term * self._largest_bound),
-            _relative(wrong, speeds, self._tolerances.least_speed * float(speeds.max(initial=0.0))),
+            _relative(outside, self._terms_beside(value), _LEAST_TERM * self._largest_bound),
+            _relative(wrong, speeds, _LEAST_SPEED * float(speeds.max(initial=0.0))),
         )
 
     def _terms_beside(self, value: FloatArray) -> FloatArray:
@@ -199,9 +188,8 @@ class StandardForm:
 
     def _magnified(self, at: _Solution) -> _Solution | None:
         """Where the programme leads once it is shifted to a solution and its violations are magnified to one."""
-        tolerances = self._tolerances
-        primal = _factor(at.outside, tolerances.magnified) if at.primal > tolerances.accurate else 1.0
-        dual = _factor(at.wrong, tolerances.magnified) if at.dual_violation > tolerances.accurate else 1.0
+        primal = _factor(at.outside, _MAGNIFIED) if at.primal > _ACCURATE else 1.0
+        dual = _factor(at.wrong, _MAGNIFIED) if at.dual_violation > _ACCURATE else 1.0
         basic = at.status == BASIC
         highs: Any = SilentHighs(
             threads=1,
@@ -213,7 +201,7 @@ class StandardForm:
         )
         shifted = highspy.HighsLp()
         shifted.num_row_, shifted.num_col_ = self._matrix.shape
-        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -tolerances.cut_off, tolerances.cut_off))
+        shifted.col_cost_ = np.where(basic, 0.0, np.clip(dual * at.reduced, -_CUT_OFF, _CUT_OFF))
         shifted.col_lower_ = primal * (self._lower - at.value)
         shifted.col_upper_ = primal * (self._upper - at.value)
         shifted.row_lower_ = shifted.row_upper_ = np.zeros(self._rows)

@@ -14,7 +14,6 @@ to the ground are put on the blocks, and the load a little higher: what moves is
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,26 +25,19 @@ from harness.model.method import Answer, Finding, Solver, Status
 from methods.numerics.claims import analysed
 from methods.peers.settings import OpenSeesSettings
 
+_TOLERANCE = 1e-9
+"""Of the forces out of balance, in mean dead loads of a block."""
+_MOST_DEAD = 20_000
+"""Iterations for the dead load."""
+_MOST = 60
+"""Iterations of a load step."""
+_SPRINGS = 1e-9
+"""Stiffness to the ground with which the mechanism is found, as a part of that of the joints: too weak to carry what
+the judge would see."""
+_EXCESS = 1e-6
+"""Of the load with which the mechanism is found, as a part of the multiplier."""
+
 _CONTACT = "zeroLengthContactASDimplex"
-
-
-@dataclass(frozen=True)
-class OpenSeesTuning:
-    """What is not for the user of OpenSees to choose.
-
-    Attributes:
-        tolerance: of the forces out of balance, in mean dead loads of a block.
-        most_dead, most: iterations for the dead load, and of a load step.
-        springs: stiffness to the ground with which the mechanism is found, as a part of that of the joints: too weak to
-            carry what the judge would see.
-        excess: of the load with which it is found, as a part of the multiplier.
-    """
-
-    tolerance: float = 1e-9
-    most_dead: int = 20_000
-    most: int = 60
-    springs: float = 1e-9
-    excess: float = 1e-6
 
 
 class _ContactModel:
@@ -54,12 +46,11 @@ class _ContactModel:
     Args:
         assembly: the wall.
         settings: stiffness of the joints.
-        options: as above.
     """
 
-    def __init__(self, assembly: Assembly, settings: OpenSeesSettings, options: OpenSeesTuning) -> None:
+    def __init__(self, assembly: Assembly, settings: OpenSeesSettings) -> None:
         self._ops = ops = _load_opensees()
-        self._options, self._stiffness = options, settings.stiffness
+        self._stiffness = settings.stiffness
         self.assembly, self._free = assembly, assembly.free.tolist()
         length, force = assembly.length_scale, assembly.force_scale / assembly.n_free
         self._length, self._force = length, force
@@ -76,7 +67,7 @@ class _ContactModel:
         ops.constraints("Transformation")
         ops.numberer("RCM")
         ops.system("UmfPack")
-        ops.test("NormUnbalance", options.tolerance, options.most_dead, 0)
+        ops.test("NormUnbalance", _TOLERANCE, _MOST_DEAD, 0)
         ops.algorithm("Newton", "-initial")
         ops.integrator("LoadControl", 0.0)
         ops.analysis("Static")
@@ -116,7 +107,7 @@ class _ContactModel:
             return False
         self._ops.loadConst("-time", 0.0)
         self._ops.algorithm("Newton")
-        self._ops.test("NormUnbalance", self._options.tolerance, self._options.most, 0)
+        self._ops.test("NormUnbalance", _TOLERANCE, _MOST, 0)
         self._pattern(2, self.assembly.live)
         return True
 
@@ -153,7 +144,7 @@ class _ContactModel:
     def add_springs(self) -> None:
         """Put weak springs between the blocks and the ground."""
         ops = self._ops
-        ops.uniaxialMaterial("Elastic", 1, self._options.springs * self._stiffness)
+        ops.uniaxialMaterial("Elastic", 1, _SPRINGS * self._stiffness)
         for i in self._free:
             ground = self._add_node(self.assembly.centroid[i])
             ops.fix(ground, 1, 1, 1)
@@ -176,14 +167,7 @@ def _load_opensees() -> Any:
 
 
 class OpenSeesContacts(Solver):
-    """Load control in OpenSees to the last step that converges.
-
-    Args:
-        options: of the model.
-    """
-
-    def __init__(self, options: OpenSeesTuning = OpenSeesTuning()) -> None:
-        self._options = options
+    """Load control in OpenSees to the last step that converges."""
 
     def solve(self, assembly: Assembly, settings: OpenSeesSettings) -> Answer:
         """The last load that converged, with its forces and what moves above it.
@@ -197,7 +181,7 @@ class OpenSeesContacts(Solver):
     def _of_component(self, assembly: Assembly, settings: OpenSeesSettings) -> Answer:
         if assembly.n_free == 0:
             return Answer(Status.OK, Finding.STANDS, "every block is fixed: nothing can move")
-        model = _ContactModel(assembly, settings, self._options)
+        model = _ContactModel(assembly, settings)
         if not model.stands_dead_load():
             sentence = "OpenSees does not converge under the dead load, which does not show that the wall falls"
             return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
@@ -245,7 +229,7 @@ class OpenSeesContacts(Solver):
         )
         before = model.displacements()
         model.add_springs()
-        if model.converges(0.0) and model.converges(self._options.excess * reached):
+        if model.converges(0.0) and model.converges(_EXCESS * reached):
             forces, reached = model.contact_forces(), model.multiplier
             moved = model.displacements() - before
             answer.mechanism = moved / (float(np.abs(moved).max()) or 1.0)

@@ -15,7 +15,7 @@ from methods.fe.answers import joint_states
 from methods.fe.settings import ConvexSettings, GapSpringsSettings, NewtonSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, make_factor, refactor_any
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK
-from methods.springs.model.options import SoftMotions
+from methods.springs.model.options import SpringOptions
 from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
@@ -84,7 +84,7 @@ def test_each_further_pin_has_the_response_to_a_unit_force_at_it() -> None:
     way.solve_anew(state, 100.0)
     way.elastic *= 1e-14  # beside so small a first response every motion counts as soft
     way.solve_anew(state, 100.0)
-    assert len(way.bordered) == SoftMotions().most
+    assert len(way.bordered) == SpringOptions().pins
     assert [response.border for response in way.unit_responses] == way.bordered[1:]
     pinned = model.tangent(state).toarray()
     pinned[way.bordered, way.bordered] += 1.0

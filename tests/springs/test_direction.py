@@ -10,7 +10,7 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import DenseFactor, SparseFactor
 from methods.springs.model.gap_law import OPEN, SLIP_PLUS, STICK, neighbour_states
-from methods.springs.model.options import SoftMotions
+from methods.springs.model.options import SpringOptions
 from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.direction import PathDirection
 from methods.springs.warm_up import block_on_halves
@@ -50,7 +50,7 @@ def change(way: PathDirection, state: IntArray, point: int, new: int) -> tuple[F
 
 
 @pytest.mark.parametrize("kind", [DenseFactor, SparseFactor])
-@pytest.mark.parametrize(("shrink", "bordered"), [(1.0, 0), (1e-6, 1), (1e-14, SoftMotions().most)])
+@pytest.mark.parametrize(("shrink", "bordered"), [(1.0, 0), (1e-6, 1), (1e-14, SpringOptions().pins)])
 @pytest.mark.parametrize("seed", range(4))
 def test_each_piece_is_in_equilibrium_and_leads_on_into_the_new_cell(
     rough: WallModel, kind: Kind, shrink: float, bordered: int, seed: int

@@ -11,7 +11,7 @@ from benchmarks.walls import running_bond
 from methods.fe.settings import GapSpringsSettings
 from methods.springs.model.factor import DenseFactor, Factor, SingularTangent, SparseFactor, refactor_any
 from methods.springs.model.gap_law import OPEN, STICK, neighbour_states
-from methods.springs.model.options import FactorTuning, SpringOptions
+from methods.springs.model.options import SpringOptions
 from methods.springs.model.wall_model import WallModel, build_model
 
 
@@ -71,7 +71,7 @@ def test_changes_of_state_follow_by_updates(model: WallModel, factor: Factor) ->
 
 
 def test_rows_are_exchanged_where_block_pivots_are_not_trusted(model: WallModel) -> None:
-    model = replace(model, options=SpringOptions(factors=FactorTuning(growth=0.0)))
+    model = replace(model, options=SpringOptions(growth=0.0))
     factor, state = SparseFactor(model), sliding_states(model, 3)
     factor.refactor(state, 0.1)
     assert factor._exchanged is not None

@@ -12,7 +12,6 @@ Source: E. Catto, Solver2D, 2024 (the "soft step" of Box2D 3).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -27,28 +26,21 @@ from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import StripShape, build_strips
 from methods.numerics.failures import NumericalFailure
 
-
-@dataclass(frozen=True)
-class Box2dTuning:
-    """Strips in Box2D.
-
-    Attributes:
-        unit: length scale of the wall in Box2D's lengths, whose smallest is 0.005.
-        sub_step: time of a sub-step.
-        gravity: in Box2D's lengths per unit time squared: displacements vanish in rounding.
-        hertz, damping_ratio: of the contacts: Box2D caps the first by the sub-step; the second then makes them rigid.
-        overlap: of the strips' faces, in roundings of the greatest coordinate: contacts never open by rounding.
-        drawn: length of the line that draws the impulse of a mean block, in greatest coordinates, so that the rounding
-            of its ends does not show.
-    """
-
-    unit: float = 100.0
-    sub_step: float = 1e-2
-    gravity: float = 1e-10
-    hertz: float = 1e9
-    damping_ratio: float = 1e6
-    overlap: float = 64.0
-    drawn: float = 1e4
+_UNIT = 100.0
+"""Length scale of the wall in Box2D's lengths, whose smallest is 0.005."""
+_SUB_STEP = 1e-2
+"""Time of a sub-step."""
+_GRAVITY = 1e-10
+"""In Box2D's lengths per unit time squared: displacements vanish in rounding."""
+_HERTZ = 1e9
+"""Of the contacts, which Box2D caps by the sub-step."""
+_DAMPING_RATIO = 1e6
+"""Of the contacts: it makes them rigid."""
+_OVERLAP = 64.0
+"""Of the strips' faces, in roundings of the greatest coordinate: contacts never open by rounding."""
+_DRAWN = 1e4
+"""Length of the line that draws the impulse of a mean block, in greatest coordinates, so that the rounding of its ends
+does not show."""
 
 
 def load_box2d() -> Any:
@@ -88,7 +80,6 @@ class Box2dJoints:
         joints: (m,) interfaces in the order in which their strips are added.
         sub_steps: of a time step.
         tuning: masses and damping.
-        options: of the strips in Box2D.
 
     Raises:
         CannotModel: see `methods.de.engines.strips.build_strips`.
@@ -102,9 +93,8 @@ class Box2dJoints:
         joints: IntArray,
         sub_steps: int,
         tuning: MassScaling,
-        options: Box2dTuning = Box2dTuning(),
     ) -> None:
-        self._box2d, self._options, self._sub_steps = load_box2d(), options, sub_steps
+        self._box2d, self._sub_steps = load_box2d(), sub_steps
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces
         self.steps = 0
@@ -113,22 +103,22 @@ class Box2dJoints:
         self.courses = number_of_courses(course)
         self._blocks, self._joints = blocks, joints
         # Kept in a sub-step: 1 / (1 + sub-step x drag), as Box2D damps.
-        self._drag = (tuning.damping ** (-1.0 / sub_steps) - 1.0) / options.sub_step
-        self._scale = options.unit / assembly.length_scale
+        self._drag = (tuning.damping ** (-1.0 / sub_steps) - 1.0) / _SUB_STEP
+        self._scale = _UNIT / assembly.length_scale
         reach = float(np.abs(np.concatenate(assembly.polygons) - assembly.middle).max()) * self._scale
-        self._reach, self._overlap = reach, options.overlap * float(np.finfo(np.float32).eps) * reach
+        self._reach, self._overlap = reach, _OVERLAP * float(np.finfo(np.float32).eps) * reach
         self._force = assembly.force_scale / max(assembly.n_free, 1)
-        self._impulse = options.drawn * reach
-        weight = self._impulse / options.sub_step
+        self._impulse = _DRAWN * reach
+        weight = self._impulse / _SUB_STEP
         corners = [(assembly.polygons[i] - assembly.centroid[i]) * self._scale for i in blocks]
         self._mass = masses(assembly, course, tuning.mass_decay)[blocks]
         self._gyration = np.array([polygon_gyration(polygon) for polygon in corners])
-        self._body_mass = self._mass * weight / options.gravity
+        self._body_mass = self._mass * weight / _GRAVITY
         margin = StripShape().rounding
         self._strips = build_strips(
             assembly,
             assembly.length_scale,
-            StripShape(rounding=margin, overlap=2.0 * margin + self._overlap / options.unit),
+            StripShape(rounding=margin, overlap=2.0 * margin + self._overlap / _UNIT),
         )
         ends = np.stack([assembly.end1, assembly.end2], axis=1) - assembly.middle
         self._ends = KDTree((ends * self._scale).reshape(-1, 4))
@@ -139,10 +129,10 @@ class Box2dJoints:
 
     def _begin(self) -> None:
         """A world at rest, without impulses."""
-        box2d, options = self._box2d, self._options
+        box2d = self._box2d
         self._history: list[list[float]] = []
         self._world = box2d.World(gravity=(0.0, 0.0))
-        self._world.set_contact_tuning(options.hertz, options.damping_ratio, 0.0)
+        self._world.set_contact_tuning(_HERTZ, _DAMPING_RATIO, 0.0)
         self._world.sleeping_enabled = self._world.continuous_enabled = False
         ground = self._world.create_static_body(position=(0.0, 0.0))
         self._bodies, body_of = [], {}
@@ -165,7 +155,7 @@ class Box2dJoints:
                 (int(self.assembly.block_b[p]), self._strips.on_b[p]),
             ):
                 free = block in body_of
-                local = vertices * self._options.unit - (np.array(self._place(block)) if free else 0.0)
+                local = vertices * _UNIT - (np.array(self._place(block)) if free else 0.0)
                 polygon = box2d.polygon(np.asarray(local, dtype=np.float32))
                 (self._bodies[body_of[block]] if free else ground).create_polygon_shape(definition, polygon)
         for k, body in enumerate(self._bodies):
@@ -194,7 +184,7 @@ class Box2dJoints:
         self._make(steps)
 
     def _make(self, steps: int) -> None:
-        time, pairs = self._options.sub_step * self._sub_steps, list(zip(self._bodies, self._now, strict=True))
+        time, pairs = _SUB_STEP * self._sub_steps, list(zip(self._bodies, self._now, strict=True))
         step = self._world.step
         for _ in range(steps):
             for body, (force, moment) in pairs:
@@ -208,16 +198,14 @@ class Box2dJoints:
         result = np.zeros((self.assembly.n_blocks, 3))
         if self._bodies:
             linear = np.asarray(self._all.get_linear_velocities(), dtype=np.float64)
-            angular = np.asarray(self._all.get_angular_velocities(), dtype=np.float64) * self._options.unit
-            own = np.column_stack([linear, angular]) * (self._drag / self._options.gravity)
+            angular = np.asarray(self._all.get_angular_velocities(), dtype=np.float64) * _UNIT
+            own = np.column_stack([linear, angular]) * (self._drag / _GRAVITY)
             result[self._blocks] = own * motion_units(self.assembly)
         return result
 
     def unbalance(self, velocity: FloatArray) -> float:
         """Largest out-of-balance force of this velocity field, see `Engine.unbalance`."""
-        mass = self._mass[:, None] * np.column_stack(
-            [np.ones((len(self._mass), 2)), self._gyration / self._options.unit**2]
-        )
+        mass = self._mass[:, None] * np.column_stack([np.ones((len(self._mass), 2)), self._gyration / _UNIT**2])
         return float(np.abs(mass * velocity[self._blocks] / motion_units(self.assembly)).max(initial=0.0))
 
     def save(self) -> FloatArray:

@@ -10,6 +10,25 @@ from scipy.sparse.csgraph import dijkstra
 
 from harness.model.assembly import Assembly, FloatArray, IntArray, polygon_area
 
+_CHAIN = 3.0
+"""Blocks a course up to which a wall is a chain: stacks have 1, arches 2."""
+_DECAY = 0.4
+"""Of the masses from one course to the next, at most."""
+_SPAN = 14.0
+"""Decay of the masses over all courses of a wall."""
+_LIGHT_SPAN = 4.0
+"""The same where tops are to be light."""
+_STRONGEST = 0.95
+"""Part of the velocity kept by a time step, at least."""
+_WEAKEST = 0.9975
+"""The same at most."""
+_KEPT = 0.98
+"""The same on light tops."""
+_LOSS = 0.2
+"""Of the velocity in a time step, times the courses."""
+_CHAIN_LOSS = 0.5
+"""The same of a chain."""
+
 
 @dataclass(frozen=True)
 class MassScaling:
@@ -24,30 +43,7 @@ class MassScaling:
     damping: float
 
 
-@dataclass(frozen=True)
-class SettlingRules:
-    """From the courses of a wall to masses and damping.
-
-    Attributes:
-        chain: blocks a course up to which a wall is a chain: stacks have 1, arches 2.
-        decay: of the masses from one course to the next, at most; span: over all courses of a wall, light_span: where
-            tops are to be light.
-        strongest, weakest: part of the velocity kept by a time step, at least and at most; kept: on light tops.
-        loss, chain_loss: of the velocity in a time step, times the courses.
-    """
-
-    chain: float = 3.0
-    decay: float = 0.4
-    span: float = 14.0
-    light_span: float = 4.0
-    strongest: float = 0.95
-    weakest: float = 0.9975
-    kept: float = 0.98
-    loss: float = 0.2
-    chain_loss: float = 0.5
-
-
-def tunings(course: IntArray, mass_decay: float | None, rules: SettlingRules = SettlingRules()) -> list[MassScaling]:
+def tunings(course: IntArray, mass_decay: float | None) -> list[MassScaling]:
     """Tunings to choose from at multiplier zero: for walls, and for chains of blocks as arches are.
 
     Walls: masses fall by exp(-0.4) a course, over at most exp(-14); damping 1 - 0.2 / courses between 0.95 and 0.9975.
@@ -55,12 +51,12 @@ def tunings(course: IntArray, mass_decay: float | None, rules: SettlingRules = S
     rest in fewer time steps. A chain is offered this tuning first. A mass decay that is given leaves one tuning.
     """
     tallest = number_of_courses(course)
-    keep = float(np.clip(1.0 - rules.loss / tallest, rules.strongest, rules.weakest))
+    keep = float(np.clip(1.0 - _LOSS / tallest, _STRONGEST, _WEAKEST))
     if mass_decay is not None:
         return [MassScaling(mass_decay, keep)]
-    wall, chain = MassScaling(min(rules.decay, rules.span / tallest), keep), lighter_upwards(course, rules)
-    chain = replace(chain, damping=float(np.clip(1.0 - rules.chain_loss / tallest, chain.damping, rules.weakest)))
-    return [chain, wall] if is_chain(course, rules) else [wall, chain]
+    wall, chain = MassScaling(min(_DECAY, _SPAN / tallest), keep), lighter_upwards(course)
+    chain = replace(chain, damping=float(np.clip(1.0 - _CHAIN_LOSS / tallest, chain.damping, _WEAKEST)))
+    return [chain, wall] if is_chain(course) else [wall, chain]
 
 
 def number_of_courses(course: IntArray) -> int:
@@ -68,14 +64,14 @@ def number_of_courses(course: IntArray) -> int:
     return int(course.max(initial=1))
 
 
-def lighter_upwards(course: IntArray, rules: SettlingRules = SettlingRules()) -> MassScaling:
+def lighter_upwards(course: IntArray) -> MassScaling:
     """Masses that fall by exp(-0.4) a course, over at most exp(-4) in all; damping 0.98."""
-    return MassScaling(min(rules.decay, rules.light_span / number_of_courses(course)), rules.kept)
+    return MassScaling(min(_DECAY, _LIGHT_SPAN / number_of_courses(course)), _KEPT)
 
 
-def is_chain(course: IntArray, rules: SettlingRules = SettlingRules()) -> bool:
+def is_chain(course: IntArray) -> bool:
     """Whether there are few blocks a course, as in stacks and arches."""
-    return bool(np.count_nonzero(course) <= rules.chain * number_of_courses(course))
+    return bool(np.count_nonzero(course) <= _CHAIN * number_of_courses(course))
 
 
 def courses(assembly: Assembly) -> IntArray:

@@ -9,7 +9,6 @@ Source: E. Catto, Iterative dynamics with temporal coherence, GDC 2005 (the solv
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,19 +21,12 @@ from methods.de.engines.mass_scaling import MassScaling, courses, masses, number
 from methods.de.engines.strips import CannotModel, StripShape, build_strips
 from methods.numerics.failures import NumericalFailure
 
-
-@dataclass(frozen=True)
-class StripTuning:
-    """Strips in pymunk.
-
-    Attributes:
-        time_step: in unit times; gravity: in unit lengths per unit time squared: displacements vanish in rounding.
-        slop: overlap that Chipmunk leaves, in radii of the strips: more than any there is, so that it pushes nothing.
-    """
-
-    time_step: float = 1e-2
-    gravity: float = 1e-12
-    slop: float = 10.0
+_TIME_STEP = 1e-2
+"""In unit times."""
+_GRAVITY = 1e-12
+"""In unit lengths per unit time squared: displacements vanish in rounding."""
+_SLOP = 10.0
+"""Overlap that Chipmunk leaves, in radii of the strips: more than any there is, so that it pushes nothing."""
 
 
 _REST = (
@@ -53,7 +45,7 @@ class PymunkJoints:
         joints: (m,) interfaces in the order in which their strips are added.
         iterations: sweeps of the contact solver in a time step.
         tuning: masses and damping.
-        options: of the strips in pymunk; shape: how they are drawn.
+        shape: how the strips are drawn.
 
     Raises:
         CannotModel: joints have strength or dilatancy, or the wall ties or props; or see
@@ -67,7 +59,6 @@ class PymunkJoints:
         joints: IntArray,
         iterations: int,
         tuning: MassScaling,
-        options: StripTuning = StripTuning(),
         shape: StripShape = StripShape(),
     ) -> None:
         if assembly.is_bar.any():
@@ -76,7 +67,7 @@ class PymunkJoints:
             raise CannotModel("contacts in pymunk do not dilate; take the engine 'sweeps'")
         if assembly.strong:
             raise CannotModel("contacts in pymunk have no strength beside friction; take the engine 'sweeps'")
-        self._options, self._shape = options, shape
+        self._shape = shape
         self.assembly = assembly
         self.interfaces = assembly.n_interfaces
         self.steps = 0
@@ -89,16 +80,16 @@ class PymunkJoints:
         self._space = pymunk.Space()
         self._space.iterations = iterations
         self._space.gravity = (0.0, 0.0)
-        self._space.damping = tuning.damping ** (1.0 / self._options.time_step)
+        self._space.damping = tuning.damping ** (1.0 / _TIME_STEP)
         if not self._space.damping > 0.0:
             raise NumericalFailure("the damping of the pymunk space underflows to zero")
-        self._space.collision_slop = self._options.slop * self._shape.rounding
+        self._space.collision_slop = _SLOP * self._shape.rounding
         self._ground = self._space.static_body
         self._mass = np.zeros((assembly.n_blocks, 3))
         self._bodies = self._add_bodies(masses(assembly, course, tuning.mass_decay))
         self._joint_of: dict[pymunk.Shape, int] = {}
         self._add_strips(joints)
-        scale = self._options.gravity / np.array([self._force, self._force, self._force * self._unit])
+        scale = _GRAVITY / np.array([self._force, self._force, self._force * self._unit])
         # One row more than there are bodies: pymunk's batches end with the static body.
         self._dead, self._live = np.zeros((2, len(blocks) + 1, 3))
         self._dead[:-1] = assembly.dead[blocks] * scale
@@ -107,8 +98,8 @@ class PymunkJoints:
         self._rest[:-1, :2] = (assembly.centroid[blocks] - assembly.middle) / self._unit
         self._out, self._in, self._loads = batch.Buffer(), batch.Buffer(), batch.Buffer()
         self.load(0.0)
-        self._space.step(self._options.time_step)
-        self._space.step(self._options.time_step)
+        self._space.step(_TIME_STEP)
+        self._space.step(_TIME_STEP)
         self._records = self._find_records()
         self._at_rest()
 
@@ -151,7 +142,7 @@ class PymunkJoints:
         """Make time steps."""
         for _ in range(steps):
             batch.set_space_bodies(self._space, _FORCE, self._loads)
-            self._space.step(self._options.time_step)
+            self._space.step(_TIME_STEP)
         self.steps += steps
 
     def velocity(self) -> FloatArray:
@@ -160,7 +151,7 @@ class PymunkJoints:
         batch.get_space_bodies(self._space, _VELOCITY, self._out)
         result = np.zeros((self.assembly.n_blocks, 3))
         read = np.frombuffer(self._out.float_buf()).reshape(-1, 3)
-        own = read[: len(self._blocks)] / (self.relaxation * self._options.gravity * self._options.time_step)
+        own = read[: len(self._blocks)] / (self.relaxation * _GRAVITY * _TIME_STEP)
         result[self._blocks] = own * motion_units(self.assembly)
         return result
 
@@ -186,7 +177,7 @@ class PymunkJoints:
 
         Chipmunk's tangent is the normal turned by +90 degrees, whichever of the two shapes comes first.
         """
-        force = self.save() * (self._force / (self._options.gravity * self._options.time_step))
+        force = self.save() * (self._force / (_GRAVITY * _TIME_STEP))
         normal, tangent = self.assembly.normal, self.assembly.tangent
         sign = normal[:, 0] * tangent[:, 1] - normal[:, 1] * tangent[:, 0]
         return np.column_stack([force[:, 0, 0], force[:, 1, 0], sign * force[:, :, 1].sum(axis=1)])

@@ -25,20 +25,12 @@ from methods.la.sources.search import Search
 from methods.numerics.linear_programme import INFINITY
 from methods.proof.search.options import CLOSED
 
-
-@dataclass(frozen=True)
-class Tree:
-    """What the tree takes for rounding, and how much of one that does not end is proved.
-
-    Attributes:
-        complementary: work of slacks on rates, in mean block weights, that is rounding.
-        agrees: difference of two scaled multipliers that linear programmes leave.
-        per_leaf: programmes that a leaf may take for that.
-    """
-
-    complementary: float = 1e-9
-    agrees: float = 1e-7
-    per_leaf: int = 3
+_COMPLEMENTARY = 1e-9
+"""Work of slacks on rates, in mean block weights, that is rounding."""
+_AGREES = 1e-7
+"""Difference of two scaled multipliers that linear programmes leave."""
+_PER_LEAF = 3
+"""Programmes that a leaf may take for a proof of its part of a tree that does not end."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +55,7 @@ class TreeProof:
         return self.lower_bound >= _below(self.state.multiplier)
 
 
-def prove(
-    search: Search, known: CollapseState, most: int, leaves: int | None = None, options: Tree = Tree()
-) -> TreeProof:
+def prove(search: Search, known: CollapseState, most: int, leaves: int | None = None) -> TreeProof:
     """The least collapse state and the bound that a tree of `most` nodes proves, as far as the budget goes.
 
     A tree that does not come to an end is cut back to its first divisions where the whole takes too many programmes to
@@ -75,19 +65,18 @@ def prove(
         search: of the wall, which stands under its dead load; known: its least collapse state so far.
         most: with none, all that is said is that no multiplier is negative.
         leaves: of a tree that does not come to an end, which are bounded to rounding at most; None as the budget says.
-        options: of the tree.
     """
     if most == 0:
         return TreeProof(known, 0.0, 0)
-    tree = _Tree(search, known, options)
+    tree = _Tree(search, known)
     nothing = np.zeros((search.problem.n_interfaces, 4), dtype=bool)
     tree.add(nothing, nothing, 0.0)
     while tree.open and len(tree.parts) < most and search.budget.programmes and tree.open[0][0] < tree.limit:
         tree.divide()
     limits = search.budget.limits
-    ended = tree.bound() >= tree.limit and search.budget.programmes >= options.per_leaf * len(tree.leaves())
-    allowed = min(limits.leaves if leaves is None else leaves, search.budget.programmes // options.per_leaf)
-    first = (min(tree.divisions, max(allowed - 1, 0)), options.per_leaf * allowed)
+    ended = tree.bound() >= tree.limit and search.budget.programmes >= _PER_LEAF * len(tree.leaves())
+    allowed = min(limits.leaves if leaves is None else leaves, search.budget.programmes // _PER_LEAF)
+    first = (min(tree.divisions, max(allowed - 1, 0)), _PER_LEAF * allowed)
     whole = (tree.divisions, search.budget.programmes if ended else min(limits.certificates, search.budget.programmes))
     for divisions, programmes in (whole,) if ended else (whole, first) if leaves is None else (first,):
         bound = min(tree.bound(divisions), tree.limit)
@@ -128,8 +117,8 @@ class _Part:
 class _Tree:
     """Parts of all states there are; the open ones with the least bound first."""
 
-    def __init__(self, search: Search, known: CollapseState, options: Tree) -> None:
-        self._search, self._options = search, options
+    def __init__(self, search: Search, known: CollapseState) -> None:
+        self._search = search
         self._work = _DeadWork(search.problem)
         self.known = known
         self.parts: list[_Part] = []
@@ -194,12 +183,12 @@ class _Tree:
         if mechanism is None:
             return False
         work = np.where(part.tight | part.still, 0.0, slack * mechanism.rates)
-        if work.sum() > self._options.complementary:
+        if work.sum() > _COMPLEMENTARY:
             row, column = np.unravel_index(int(work.argmax()), work.shape)
             part.contact = (int(row), int(column))
             return True
         state = search.state_of(mechanism.velocities, mechanism.rates)
-        if state is not None and state.multiplier <= statics.multiplier + self._options.agrees:
+        if state is not None and state.multiplier <= statics.multiplier + _AGREES:
             part.bound = np.inf
         if state is not None and state.multiplier < self.known.multiplier:
             self.known = state

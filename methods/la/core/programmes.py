@@ -20,19 +20,11 @@ from harness.model.joint_law import block_diagonal
 from methods.la.core.problem import Problem
 from methods.numerics.linear_programme import INFINITY, Programme
 
-
-@dataclass(frozen=True)
-class StaticSolver:
-    """How HiGHS solves static programmes.
-
-    Attributes:
-        simplex_up_to: interfaces up to which the simplex method is the quicker way to a vertex; above, its interior
-            point with crossover.
-        devex_above: interfaces above which Devex pricing finds the vertex sooner than steepest edge.
-    """
-
-    simplex_up_to: int = 800
-    devex_above: int = 200
+_SIMPLEX_UP_TO = 800
+"""Interfaces up to which the simplex method is the quicker way to a vertex; above, its interior point with
+crossover."""
+_DEVEX_ABOVE = 200
+"""Interfaces above which Devex pricing finds the vertex sooner than steepest edge."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +50,7 @@ class StaticProgramme:
     Columns are the slacks (y1, y2, y3) of an interface, from which r and y4 follow, and lambda.
     """
 
-    def __init__(self, problem: Problem, solver: StaticSolver = StaticSolver()) -> None:
+    def __init__(self, problem: Problem) -> None:
         self.problem = problem
         m, rows, constant = problem.n_interfaces, problem.law.rows, problem.law.constant
         inverse = 2.0 * np.eye(3) - rows[:, :3]  # of a matrix whose diagonal is one, with entries in the last row only
@@ -78,8 +70,8 @@ class StaticProgramme:
             (np.append(self._free[0], -INFINITY), np.append(self._free[1], INFINITY)),
             (np.append(-dead, self._least_last), np.append(-dead, np.full(m, INFINITY))),
         )
-        self._programme.highs.setOptionValue("solver", "simplex" if m <= solver.simplex_up_to else "ipm")
-        if m > solver.devex_above:
+        self._programme.highs.setOptionValue("solver", "simplex" if m <= _SIMPLEX_UP_TO else "ipm")
+        if m > _DEVEX_ABOVE:
             self._programme.highs.setOptionValue("simplex_dual_edge_weight_strategy", 1)
 
     def solve(

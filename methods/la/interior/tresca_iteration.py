@@ -9,7 +9,7 @@ the moving contacts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,29 +22,22 @@ from methods.la.interior.interior_point import PathResult, PathSettings, follow_
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.numerics.failures import NumericalFailure
 
-
-@dataclass(frozen=True)
-class TrescaIteration:
-    """How the bounds lag behind.
-
-    Attributes:
-        least_bound: least friction bound, in mean block weights, where a joint carries nothing.
-        shortest: length of a step below which the path is stuck.
-        free, fall: length of a step from which it counts as not blocked, and factor on y o g in one.
-        start_gap, end_gap: relative gaps of the associated path at which the bounds take over, and at which y o g falls
-            no further.
-        to_boundary: part of the way to the boundary that a step goes.
-        clipped: times the mean product that the second-order term may be.
-    """
-
-    least_bound: float = 1e-4
-    shortest: float = 1e-4
-    free: float = 0.3
-    fall: float = 0.8
-    start_gap: float = 1e-2
-    end_gap: float = 1e-6
-    to_boundary: float = 0.95
-    clipped: float = 5.0
+_LEAST_BOUND = 1e-4
+"""Least friction bound, in mean block weights, where a joint carries nothing."""
+_SHORTEST = 1e-4
+"""Length of a step below which the path is stuck."""
+_FREE = 0.3
+"""Length of a step from which it counts as not blocked."""
+_FALL = 0.8
+"""Factor on y o g in one."""
+_START_GAP = 1e-2
+"""Relative gap of the associated path at which the bounds take over."""
+_END_GAP = 1e-6
+"""The same at which y o g falls no further."""
+_TO_BOUNDARY = 0.95
+"""Part of the way to the boundary that a step goes."""
+_CLIPPED = 5.0
+"""Times the mean product that the second-order term may be."""
 
 
 def _with_bounds(problem: Problem, bound: FloatArray) -> Problem:
@@ -54,9 +47,7 @@ def _with_bounds(problem: Problem, bound: FloatArray) -> Problem:
     return replace(problem, law=JointLaw(none, none, constant))
 
 
-def tresca_mechanism(
-    problem: Problem, newton: NewtonMatrix, steps: int, follow: float, options: TrescaIteration = TrescaIteration()
-) -> tuple[PathResult, int]:
+def tresca_mechanism(problem: Problem, newton: NewtonMatrix, steps: int, follow: float) -> tuple[PathResult, int]:
     """The exact mechanism of the programme with the bounds reached, and the Newton steps in all.
 
     Args:
@@ -64,17 +55,16 @@ def tresca_mechanism(
         newton: its Newton matrix.
         steps: Newton steps with lagged bounds at most.
         follow: part of the way to mu N that a bound moves in a step.
-        options: how the bounds lag behind.
 
     Raises:
         SingularMatrix: a Newton matrix is singular to rounding.
     """
-    settings = PathSettings(dilatancy=1.0, gap=options.start_gap, residual=1e-3)
+    settings = PathSettings(dilatancy=1.0, gap=_START_GAP, residual=1e-3)
     start = follow_path(problem, newton, start_point(problem), settings)
-    point, bound = start.point, _strength(problem, start.point, options.least_bound)
+    point, bound = start.point, _strength(problem, start.point, _LEAST_BOUND)
     tight = close_tight(problem)
     mean = float((point.slack * point.rates).mean())
-    least = options.end_gap * problem.live_work / point.slack.size
+    least = _END_GAP * problem.live_work / point.slack.size
     taken = 0
     for _ in range(steps):
         problem.deadline.ask()
@@ -84,13 +74,13 @@ def tresca_mechanism(
         except (NumericalFailure, FloatingPointError):
             break
         taken += 1
-        wanted = bound + follow * (_strength(problem, point, options.least_bound) - bound)
-        point, length = _step(step, point, wanted - bound, mean, options)
+        wanted = bound + follow * (_strength(problem, point, _LEAST_BOUND) - bound)
+        point, length = _step(step, point, wanted - bound, mean)
         bound = 0.5 * point.slack[:, 2:].sum(axis=1)
-        if length < options.shortest:
+        if length < _SHORTEST:
             break
-        if length > options.free:
-            mean = max(options.fall * mean, least)
+        if length > _FREE:
+            mean = max(_FALL * mean, least)
     held = _with_bounds(problem, bound)
     sharp = follow_path(held, newton, start_point(held), PathSettings.sharp())
     return sharp, start.iterations + taken + sharp.iterations
@@ -100,9 +90,7 @@ def _strength(problem: Problem, point: Point, least: float) -> FloatArray:
     return np.asarray(np.maximum(problem.law.strength(problem.forces_of_slacks(point.slack)), least))
 
 
-def _step(
-    step: NewtonStep, point: Point, shift: FloatArray, mean: float, options: TrescaIteration
-) -> tuple[Point, float]:
+def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tuple[Point, float]:
     """A predictor and corrector to y o g = mean while both shear slacks grow by `shift` (m,); and its length."""
     grown = np.zeros(point.slack.shape)
     grown[:, 2:] = shift[:, None]
@@ -111,8 +99,8 @@ def _step(
     lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
     with np.errstate(over="ignore"):  # A product without bound is clipped below like any large one.
         second = (predictor.slack + grown) * predictor.rates * min(lengths)
-    target = target - np.clip(second, -options.clipped * mean, options.clipped * mean)
+    target = target - np.clip(second, -_CLIPPED * mean, _CLIPPED * mean)
     corrector = step.refined(step.direction(target), target)
     corrector = replace(corrector, slack=corrector.slack + grown)
-    primal, dual = step_lengths(point, corrector, step.tight, options.to_boundary, 1.0)
+    primal, dual = step_lengths(point, corrector, step.tight, _TO_BOUNDARY, 1.0)
     return step.advance(corrector, primal, dual), min(primal, dual)

@@ -277,7 +277,7 @@ def _from_gravity(search: Search, gravity: Gravity, scale: float, interval: floa
         for further in doubled(model, factor, first):
             first = further
     follower = PathFollower.from_rest(model, factor, first, search.choices.springs.certificate)
-    return PathStart(follower, model.options.jump.most, interval)
+    return PathStart(follower, model.options.jumps, interval)
 
 
 def _scale(search: Search) -> float:
@@ -293,7 +293,7 @@ def _from_central_forces(search: Search, ratio: float, share: float = np.inf) ->
     path_start = _from_forces(search, forces, 0.0, ratio)
     if share == np.inf:
         return path_start
-    jumps = path_start.follower.options.jump.most
+    jumps = path_start.follower.options.jumps
     return replace(path_start, jumps=jumps, interval=share * _scale(search))
 
 

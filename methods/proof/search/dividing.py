@@ -6,8 +6,13 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.proof.search.halpern import Splitting
+from methods.proof.search.options import NARROW
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.subproblem import AtContact, AtNormalForce, Division
+
+_INSIDE = 0.1
+"""Part of the range of a normal force that either half of a division has at least, so that none is divided next to the
+end of its range."""
 
 
 def division_of(run: Splitting, vain: Division | None = None) -> Division | None:
@@ -28,7 +33,7 @@ def division_of(run: Splitting, vain: Division | None = None) -> Division | None
     normal, by_normal = _at_normal_force(relaxation, products)
     if isinstance(vain, AtNormalForce) or contact is None:
         return contact
-    narrow = relaxation.high - relaxation.low < relaxation.options.windows.narrow * relaxation.high
+    narrow = relaxation.high - relaxation.low < NARROW * relaxation.high
     return normal if isinstance(vain, AtContact) or (by_normal > max(by_contact, 0.0) and not narrow) else contact
 
 
@@ -45,7 +50,7 @@ def _at_normal_force(relaxation: Relaxation, products: FloatArray) -> tuple[Divi
     least, greatest = relaxation.bounds.normal_least, relaxation.bounds.normal_greatest
     options = relaxation.options
     width = np.maximum(greatest - least, options.rounding.margin)
-    inside = options.windows.inside * width
+    inside = _INSIDE * width
     middle = np.clip(
         _balanced(normals, rates, least, greatest, options.rounding.halvings), least + inside, greatest - inside
     )

@@ -19,6 +19,27 @@ from harness.model.assembly import FloatArray, IntArray
 from methods.proof.search.dual import DualBound, dual_bound
 from methods.proof.search.relaxation import Relaxation
 
+_CHECKED_EVERY = 200
+"""Iterations between two safe bounds, each of which may cost hundreds of iterations."""
+_CHECKED_LATER = 0.1
+"""The same as a share of those made."""
+_SUFFICIENT = 0.2
+"""A restart where the residual fell to this share of that at the last."""
+_NECESSARY = 0.8
+"""A restart where it fell to this share and rises."""
+_LONG = 0.36
+"""A restart where the round is longer than this share of the run."""
+_PATIENCE = 200
+"""Iterations that such a round has at least."""
+_STEP_CHANGE = 2.0
+"""Factor by which a check changes the step at most."""
+_STEP_KEPT = 1.2
+"""Factor below which a check leaves the step. A larger change may let the step diverge."""
+_TINY = 1e-9
+"""Losses and distances below this, relative and absolute, are rounding."""
+_ROUNDING = 16.0
+"""Units of rounding of the iterate's norm below which a residual in single precision says nothing more."""
+
 _Products = npt.NDArray[np.floating[Any]]
 """(a, c) products of a relaxation in the precision of a sweep."""
 
@@ -46,8 +67,8 @@ class Splitting:
 
     def run(self, until: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         """Iterate to this CPU time, or until `stop(bound, primal cost)` says so at a check. Raises OutOfTime."""
-        restarts, iterates = self.relaxation.options.restarts, self._iterates()
-        check = self.iterations + restarts.checked_every
+        iterates = self._iterates()
+        check = self.iterations + _CHECKED_EVERY
         first, before = 0.0, np.inf
         while True:
             self.relaxation.equations.deadline.ask()
@@ -55,7 +76,7 @@ class Splitting:
             self.iterations += 1
             first = residual if iterates.count == 1 else first
             if self.iterations >= check:
-                check = self.iterations + max(restarts.checked_every, int(restarts.checked_later * self.iterations))
+                check = self.iterations + max(_CHECKED_EVERY, int(_CHECKED_LATER * self.iterations))
                 self.iterate = iterates.iterate.astype(np.float64)
                 bound, primal = dual_bound(self.relaxation, self.iterate, self.step, self.cost), iterates.primal
                 if stop(bound, primal) or time.process_time() > until:
@@ -65,9 +86,9 @@ class Splitting:
                     iterates = self._iterates()
                 if bound is not None:
                     self._balance(iterates, bound, primal)
-            stale = residual <= restarts.necessary * first and residual > before
-            long = iterates.count > restarts.long * self.iterations + restarts.patience
-            if iterates.count > 1 and (residual <= restarts.sufficient * first or stale or long):
+            stale = residual <= _NECESSARY * first and residual > before
+            long = iterates.count > _LONG * self.iterations + _PATIENCE
+            if iterates.count > 1 and (residual <= _SUFFICIENT * first or stale or long):
                 iterates.restart()
             before = residual
 
@@ -81,9 +102,8 @@ class Splitting:
         A larger step lets the dual change less from one iterate to the next, so less of it is left to be paid. Either
         ratio alone runs away where its terms answer late; their mean does not.
         """
-        restarts = self.relaxation.options.restarts
         size = abs(bound.value) if self.size is None else self.size
-        tiny = restarts.tiny * (1.0 + abs(bound.value))
+        tiny = _TINY * (1.0 + abs(bound.value))
         lost, apart = max(bound.value - bound.of(size), tiny), max(abs(primal - bound.value), tiny)
         point = self.relaxation.project(self.iterate)
         dual = (point - self.iterate) / self.step
@@ -91,9 +111,9 @@ class Splitting:
         self._checked = point, dual
         moved, turned = (float(np.linalg.norm(a - b)) for a, b in zip((point, dual), before, strict=True))
         ratio = (lost / apart * max(moved, tiny) / max(turned * self.step, tiny)) ** 0.25
-        ratio = min(max(ratio, 1.0 / restarts.step_change), restarts.step_change)
+        ratio = min(max(ratio, 1.0 / _STEP_CHANGE), _STEP_CHANGE)
         step = min(max(ratio * self.step, self.steps[0]), self.steps[1])
-        if abs(np.log(step / self.step)) > np.log(restarts.step_kept):
+        if abs(np.log(step / self.step)) > np.log(_STEP_KEPT):
             iterates.restart(step / self.step)
             self.step = step
 
@@ -116,7 +136,7 @@ class _Iterates:
         self._anchor, self._projected, self._gap = (self.iterate.copy() for _ in range(3))
         self._half = np.empty((len(self._rows), self._columns.shape[1]), dtype=kind)
         self._inner = np.empty((self._rows.shape[1], self._columns.shape[1]), dtype=kind)
-        self._noise = float(np.finfo(kind).eps) * relaxation.options.restarts.rounding
+        self._noise = float(np.finfo(kind).eps) * _ROUNDING
         self.count, self.primal = 0, 0.0
 
     def _project(self) -> None:

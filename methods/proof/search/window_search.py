@@ -15,11 +15,34 @@ from methods.proof.search.dividing import division_of
 from methods.proof.search.dual import DualBound
 from methods.proof.search.equations import Equations
 from methods.proof.search.halpern import Splitting, carried_over
-from methods.proof.search.options import CLOSED
+from methods.proof.search.options import CLOSED, NARROW
 from methods.proof.search.rate_bounds import RateProgramme, RateProof
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackBounds, SlackProgramme
 from methods.proof.search.subproblem import Division, Subproblem
+
+_GAIN = 0.3
+"""Part of the bracket that one window must gain before the next is built, and the last half of its time to go on with
+it."""
+_SIZE = 2.5
+"""Bound of the size of mechanisms, in that which its relaxation comes to, that is good enough."""
+_ABOVE = 1e-9
+"""Relative distance of the window's upper end above the state, so that rounding does not cut it off."""
+_BELOW = 1e-2
+"""Part of the bracket that a certificate may lose to rounding before it takes more digits."""
+_FINISHED = 5e-7
+"""Relative distance at which a window ends: less than `CLOSED`, because a certificate loses some."""
+_PATIENCE = 12_000
+"""Iterations in which the bracket is to lose `_GAIN` of itself; else its states are divided."""
+_WORTH = 0.1
+"""Part of the bracket that a window must gain for the next not to be of a half of its states."""
+_SHARE = 0.5
+"""Share of the iterations of a window that takes the place of `_PATIENCE` where it is more."""
+_LEAST_WEIGHT = 0.3
+"""Of a rate in the size of mechanisms, the greatest price being one. A smaller one loses less to the price, but the
+size may then be unbounded."""
+_NEWEST_WEIGHT = 0.25
+"""Share of the weights that the last check has, since prices change from one to the next."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +176,7 @@ class WindowSearch:
 
     def division(self) -> Division | None:
         """Where the states of this search are best divided; None if every contact is decided."""
-        gained = self.found.lower - self._made_at > self._options.windows.worth * (self.found.upper - self._made_at)
+        gained = self.found.lower - self._made_at > _WORTH * (self.found.upper - self._made_at)
         return division_of(self._runs["multiplier"], None if gained else self._made_by)
 
     def window(self) -> bool:
@@ -168,18 +191,18 @@ class WindowSearch:
             return self._rates is None
         stalled = self._bound_multiplier()
         if self._certify is not None and found.lower > before:
-            needed = found.lower - self._options.windows.below * (found.upper - found.lower)
+            needed = found.lower - _BELOW * (found.upper - found.lower)
             found.lower = min(found.lower, max(before, self._certify.window(found.proofs[-1], needed)))
-        if self._slow and found.lower - before < self._options.windows.gain * (found.upper - before):
+        if self._slow and found.lower - before < _GAIN * (found.upper - before):
             return False
-        return found.lower - before > self._options.windows.worth * (found.upper - before) or (last and not stalled)
+        return found.lower - before > _WORTH * (found.upper - before) or (last and not stalled)
 
     def _is_last(self, relaxation: Relaxation) -> bool:
-        return self.found.upper - relaxation.low < self._options.windows.narrow * self.found.upper
+        return self.found.upper - relaxation.low < NARROW * self.found.upper
 
     def _build(self) -> bool:
         """Build the relaxation of the present bracket; False if no state is left in it that is not bounded."""
-        found, high = self.found, self.found.upper * (1.0 + self._options.windows.above)
+        found, high = self.found, self.found.upper * (1.0 + _ABOVE)
         self._gaps = [(time.process_time(), found.upper - found.lower)]
         bounds = self._slack_bounds(high, self.case)
         if bounds is not None and self._rates is not None:
@@ -245,7 +268,7 @@ class WindowSearch:
             size = bound.greatest_size()
             if size < self._size:
                 self._size, self._size_products = size, bound.products
-            return self._size < self._options.windows.size * max(abs(bound.value), 1e-9)
+            return self._size < _SIZE * max(abs(bound.value), 1e-9)
 
         self._run("size", max(5.0, 0.25 * spent), stop)
 
@@ -254,21 +277,21 @@ class WindowSearch:
         found, run = self.found, self._runs["multiplier"]
         relaxation, run.size = run.relaxation, self._size
         start, last = found.lower, self._is_last(relaxation)
-        windows, agreeing, mark, since = self._options.windows, 0, found.upper - found.lower, run.iterations
+        agreeing, mark, since = 0, found.upper - found.lower, run.iterations
         self._slow = False
 
         def stop(bound: DualBound | None, primal: float) -> bool:
             nonlocal agreeing, mark, since
-            if found.upper - found.lower < (1.0 - windows.gain) * mark:
+            if found.upper - found.lower < (1.0 - _GAIN) * mark:
                 mark, since = found.upper - found.lower, run.iterations
-            self._slow = run.iterations - since > max(windows.patience, windows.share * run.iterations)
+            self._slow = run.iterations - since > max(_PATIENCE, _SHARE * run.iterations)
             if bound is None or self._slow:
                 return self._slow
             self._weigh(bound)
             self._keep(relaxation, bound)
-            gained = found.lower > start + windows.gain * (found.upper - start)
+            gained = found.lower > start + _GAIN * (found.upper - start)
             fast = self._gains(found.upper - found.lower)
-            if found.lower >= found.upper * (1.0 - windows.finished) or (gained and not fast and not last):
+            if found.lower >= found.upper * (1.0 - _FINISHED) or (gained and not fast and not last):
                 return True
             close = 0.05 * (found.upper - found.lower)
             ends = (relaxation.low + primal - found.lower, primal - bound.value)
@@ -284,15 +307,15 @@ class WindowSearch:
         self._gaps.append((now, gap))
         half = 0.5 * (self._gaps[0][0] + now)
         earlier = next(gap for when, gap in reversed(self._gaps) if when <= half)
-        return gap < (1.0 - self._options.windows.gain) * earlier
+        return gap < (1.0 - _GAIN) * earlier
 
     def _weigh(self, bound: DualBound) -> None:
         """Let the size of the next window's mechanisms weigh rates as duals price them, so that a few do not pay for
         all."""
         prices = np.append(bound.prices, bound.lift_price)
         if prices.max() > 0.0:
-            weights = np.maximum(prices / prices.max(), self._options.windows.least_weight)
-            share = self._options.windows.newest_weight
+            weights = np.maximum(prices / prices.max(), _LEAST_WEIGHT)
+            share = _NEWEST_WEIGHT
             self._weights = weights if self._weights is None else (1 - share) * self._weights + share * weights
 
     def _keep(self, relaxation: Relaxation, bound: DualBound) -> None:

@@ -51,7 +51,7 @@ def broken_model(
         broken: (m,) joints that break now.
         settings: of the model.
     """
-    after = build_model(model.assembly.with_broken(broken), settings, options=model.options)
+    after = build_model(model.assembly.with_broken(broken), settings)
     m, contacts = model.assembly.n_interfaces, model.n_contacts
     normal, shear = model.forces(u, history, state)
     borne = -model.end_forces(normal, shear)[:, 2] / model.force
@@ -62,4 +62,4 @@ def broken_model(
     share = pressed / np.where(total > 0.0, total, 1.0)[interface]
     own = np.where(broken[interface], borne[interface] * share - (after.kt * slip)[:contacts], history[:contacts])
     glued = history[contacts:][~broken[model.cohesive]]
-    return replace(after, history=np.concatenate([own, glued]), deadline=model.deadline)
+    return replace(after, history=np.concatenate([own, glued]), options=model.options, deadline=model.deadline)

@@ -25,6 +25,14 @@ from methods.numerics.vectors import largest
 from methods.springs.model.point_loops import add_tangent
 from methods.springs.model.wall_model import WallModel
 
+_LEAST_STIFFNESS = 1e-4
+"""Share of the stiffness of blocks against the ground below which a motion has none of its own: rounding of the tangent
+leaves 1e-8 of it."""
+_DENSE = 70
+"""Unknowns up to which the dense inverse is faster than the sparse product form."""
+_UPDATES = 64
+"""Rank-one changes of one factor at most, for which the product form has room."""
+
 Change = tuple[int, int, int]
 """A point, its state and the state that it turns to."""
 
@@ -86,7 +94,7 @@ class Factor(Protocol):
 
 def make_factor(model: WallModel) -> Factor:
     """The form that suits the size of the wall."""
-    return DenseFactor(model) if model.n_unknowns <= model.options.factors.dense else SparseFactor(model)
+    return DenseFactor(model) if model.n_unknowns <= _DENSE else SparseFactor(model)
 
 
 def refactor_any(factor: Factor, state: IntArray, careful: bool = False, bordered: Sequence[int] = ()) -> None:
@@ -107,7 +115,7 @@ class DenseFactor:
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
-        self.capacity = model.options.factors.updates
+        self.capacity = _UPDATES
         self.count = 0
         self.factorisations = 0
         self.careful = True
@@ -135,10 +143,7 @@ class DenseFactor:
             self.inverse, info = sla.lapack.dgetri(lu, pivots, overwrite_lu=True)
         if info != 0 or not np.isfinite(self.inverse).all():
             raise SingularTangent("the tangent is singular in these states")
-        if (
-            not (shift or regularised)
-            and self.model.options.regularisation.least * largest((self.inverse * self._size).T @ self._size) > 1.0
-        ):
+        if not (shift or regularised) and _LEAST_STIFFNESS * largest((self.inverse * self._size).T @ self._size) > 1.0:
             raise SingularTangent("the tangent is singular to rounding in these states")
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -171,7 +176,7 @@ class SparseFactor:
 
     def __init__(self, model: WallModel) -> None:
         self.model = model
-        self.capacity = model.options.factors.updates
+        self.capacity = _UPDATES
         self.count = 0
         self.factorisations = 0
         n = model.n_unknowns
@@ -216,16 +221,11 @@ class SparseFactor:
         self._lu.values[self._diagonal] += added
         for border in bordered:
             self._lu.values[self._diagonal[border]] += 1.0
-        return self._lu.factorise(model.options.factors.growth) and self._stiff(self._lu.values[self._diagonal], added)
+        return self._lu.factorise(model.options.growth) and self._stiff(self._lu.values[self._diagonal], added)
 
     def _stiff(self, pivots: FloatArray, added: FloatArray) -> bool:
         """Whether every pivot (N,) is beyond rounding, be it by what was added to the tangent."""
-        return bool(
-            (
-                abs(pivots)
-                >= self.model.options.regularisation.least * np.where(added == 0.0, self.model.regularised, 0.0)
-            ).all()
-        )
+        return bool((abs(pivots) >= _LEAST_STIFFNESS * np.where(added == 0.0, self.model.regularised, 0.0)).all())
 
     def _with_row_exchanges(self, matrix: sp.csc_matrix, added: FloatArray, bordered: Sequence[int]) -> BandLU:
         for border in bordered:

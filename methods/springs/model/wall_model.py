@@ -27,6 +27,10 @@ from methods.springs.model.point_loops import add_changes, add_tangent, point_st
 from methods.springs.model.points import GapSettings, gap_points
 from methods.springs.model.strength import with_strength
 
+_REGULARISATION = 1e-8
+"""Stiffness of a block against the ground that a singular tangent is factorised with, in springs of a gap point;
+refinement removes its force."""
+
 
 @dataclass(frozen=True, eq=False)
 class WallModel:
@@ -250,7 +254,6 @@ def build_model(
     assembly: Assembly,
     settings: GapSettings,
     friction_cap: float = np.inf,
-    options: SpringOptions = SpringOptions(),
 ) -> WallModel:
     """The gap-spring model of a wall.
 
@@ -280,9 +283,7 @@ def build_model(
     gyration = np.array([np.ptp(assembly.polygons[i], axis=0) @ np.ptp(assembly.polygons[i], axis=0) for i in order])
     lever = gyration / (12.0 * length**2)
     inertia = np.stack([mass, mass, mass * lever], axis=1).ravel()
-    regularised = (
-        options.regularisation.stiffness * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
-    )
+    regularised = _REGULARISATION * np.stack([np.ones_like(lever), np.ones_like(lever), lever], axis=1).ravel()
     law = assembly.law.with_friction(np.minimum(assembly.friction, friction_cap))
     stiffness = settings.normal_stiffness or 1000.0 * force / length
     model = WallModel(

@@ -17,6 +17,18 @@ from methods.springs.model.point_loops import point_strains
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.continuation import PathFollower
 
+_STEPS = 12
+"""Newton steps at most."""
+_UPDATES = 24
+"""Changed points above which a fresh factor is cheaper than updates."""
+_PIVOT = 1e3
+"""|1 + b'y|, or its inverse, above which updates are not trusted here."""
+_LONGEST = 5.0
+"""Steps longer than this many tangent steps may have left the branch and are not taken."""
+_BALANCED = 1e-9
+"""Out-of-balance force (share of the load scale) up to which a step is taken without a further one: by way of huge
+displacements, over a nearly singular tangent, it loses digits."""
+
 
 def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
     """Commit the history where the follower stands and step `ahead` in the multiplier.
@@ -25,7 +37,7 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
         A follower on the new path, or None when Newton did not settle (the old follower must then be `refresh`ed).
     """
     model, factor = follower.model, follower.factor
-    options, near = model.options.commits, model.options.breakpoints.force * follower.scale
+    near = model.options.breakpoints.force * follower.scale
     history = follower.commit()
     multiplier = follower.multiplier + ahead
     u, state = follower.u.copy(), follower.state.copy()
@@ -35,7 +47,7 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
     seen: set[bytes] = set()
     landed = np.empty_like(state)
     try:
-        for _ in range(options.steps):
+        for _ in range(_STEPS):
             step = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
             u += step
             point_strains(model.unknown, model.rows, model.interface, model.position, step, opening_rate, slip_rate)
@@ -45,7 +57,7 @@ def committed_step(follower: PathFollower, ahead: float) -> PathFollower | None:
             if same_forces(opening, trial, model.kn, model.mu, model.lift, state, landed, near):
                 opening, trial = model.strains(u)
                 trial = model.kt * trial + history
-                if largest(model.out_of_balance(opening, trial, state, multiplier)) > options.balanced * follower.scale:
+                if largest(model.out_of_balance(opening, trial, state, multiplier)) > _BALANCED * follower.scale:
                     continue
                 if not _near(follower, u, ahead):
                     return None
@@ -64,10 +76,7 @@ def _near(follower: PathFollower, u: FloatArray, ahead: float) -> bool:
     """Whether a step stays on its branch: the live load works forwards, not much further than the tangent predicts."""
     moved = u - follower.u
     predicted = largest(follower.direction.velocity) * ahead
-    return (
-        float(follower.model.live @ moved) > 0.0
-        and largest(moved) <= follower.model.options.commits.longest * predicted
-    )
+    return float(follower.model.live @ moved) > 0.0 and largest(moved) <= _LONGEST * predicted
 
 
 def _change_states(model: WallModel, factor: Factor, state: IntArray, wanted: IntArray) -> None:
@@ -81,7 +90,7 @@ def _change_states(model: WallModel, factor: Factor, state: IntArray, wanted: In
     """
     points = np.flatnonzero(state != wanted).tolist()
     changes = [change for p in points for change in _way(p, int(state[p]), int(wanted[p]))]
-    if len(points) <= model.options.commits.updates and factor.count + len(changes) < factor.capacity:
+    if len(points) <= _UPDATES and factor.count + len(changes) < factor.capacity:
         for k, change in enumerate(changes):
             if k % COLUMNS == 0:
                 factor.foresee(changes[k : k + COLUMNS])
@@ -112,7 +121,7 @@ def _change(model: WallModel, factor: Factor, change: Change) -> bool:
     index, _, b = model.change(*change)
     y = factor.solve_change(change)
     denominator = 1.0 + float(b @ y[index])
-    if not 1.0 / model.options.commits.pivot < abs(denominator) < model.options.commits.pivot:
+    if not 1.0 / _PIVOT < abs(denominator) < _PIVOT:
         return False
     factor.update(y, index, b, denominator)
     return True

@@ -26,6 +26,29 @@ from methods.springs.path.path_record import PathEnd, PathRecord, PathSnapshot, 
 from methods.springs.path.plateau import worst_residual
 from methods.springs.rest.newton import Equilibrium
 
+_RATE = 1e-11
+"""Rates of breakpoint functions below this share of the fastest gap rate count as zero."""
+_SOFT_RATE = 1e-7
+"""The same on pieces with pins, as forces over a motion as long as the displacements so far."""
+_BALANCE_EVERY = 8
+"""Rank-one changes of a factor between two looks at the out-of-balance force."""
+_REMOVED = 1e-9
+"""Out-of-balance force, as a share of the load scale, above which equilibrium is found again."""
+_ROUNDING = 1e-14
+"""The same below which there is nothing to correct."""
+_CORRECTIONS = 2
+"""Steps of a correction at most."""
+_LOST = 1e-5
+"""Out-of-balance force at which the path counts as lost."""
+_LEAST_MOTION = 1e-3
+"""Share of the present displacement by which a mechanism moves before its next breakpoint, to be looked at."""
+_FAR = 1e4
+"""Multiple of the present displacement that a mechanism moves before its next breakpoint as the collapse."""
+_GROWTH = 1.1
+"""Of the displacements from one check to the next."""
+_CONFIRMED = 1e10
+"""Displacements, in multiples of the first, at which a mechanism that passes its check is the collapse."""
+
 
 class PathFollower:
     """A point on the path and the straight piece that leads on from it.
@@ -139,8 +162,8 @@ class PathFollower:
         worst = largest(residual) / self.scale
         self.worst_residual = max(self.worst_residual, worst)
         moved = False
-        for _ in range(self.options.drift.corrections):
-            if worst < self.options.drift.rounding:
+        for _ in range(_CORRECTIONS):
+            if worst < _ROUNDING:
                 break
             correction, rate = self.direction.balance(residual)
             self.direction.rates(correction, np.zeros_like(correction))
@@ -153,7 +176,7 @@ class PathFollower:
                 break
         if moved:
             self.direction.measure()
-        if min(worst, self.worst_residual) > self.options.drift.lost:
+        if min(worst, self.worst_residual) > _LOST:
             raise SingularTangent("the path was lost to rounding")
 
     def _out_of_balance(self) -> FloatArray:
@@ -177,7 +200,7 @@ class PathFollower:
         """Whether no force changes along the present piece (rates of forces negligible beside the fastest)."""
         way = self.direction
         strain, elastic = strain_rates(way.opening_rate, way.trial_rate, self.model.kt, self.model.lift, self.state)
-        return elastic <= self.options.mechanism.elastic * strain
+        return elastic <= self.options.elastic * strain
 
     def _goes_on(self) -> bool:
         """Whether a piece that rises stays in equilibrium as far as a mechanism moves that is the collapse.
@@ -188,10 +211,10 @@ class PathFollower:
         model, way = self.model, self.direction
         if way.speed <= 0.0:
             return False
-        reach = self.options.mechanism.far * max(abs(self.multiplier) / way.speed, self.extent / largest(way.velocity))
+        reach = _FAR * max(abs(self.multiplier) / way.speed, self.extent / largest(way.velocity))
         u, multiplier = self.u + reach * way.velocity, self.multiplier + reach * way.speed
         residual = model.residual(u, multiplier, self.history, model.states(u, self.history))
-        return largest(residual) <= self.options.drift.lost * load_scale(model, multiplier)
+        return largest(residual) <= _LOST * load_scale(model, multiplier)
 
     def run(
         self, record: PathRecord, max_events: int, target: float = np.inf, turn: float = np.inf, note: int = 1
@@ -233,8 +256,8 @@ class PathFollower:
             model.lift,
             self.state,
             self.options.breakpoints.force * self.scale,
-            self.options.breakpoints.rate,
-            self.options.breakpoints.soft_rate * self.scale / self.extent if way.bordered else np.inf,
+            _RATE,
+            _SOFT_RATE * self.scale / self.extent if way.bordered else np.inf,
             self.last_point,
             self.last_old,
         )
@@ -278,25 +301,25 @@ class PathFollower:
         multiplier, and the last one that passes its check stands for the plateau when rounding ends the path. Among
         displacements of 1e10 times the elastic ones it is the plateau.
         """
-        model, way, tests = self.model, self.direction, self.options.mechanism
+        model, way = self.model, self.direction
         if not way.bordered:
             return False
         size, fastest = self.extent, largest(way.velocity)
         ahead = step * fastest
-        if ahead < tests.least * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
+        if ahead < _LEAST_MOTION * size or not self.is_mechanism() or live_rate(model.live, way.velocity) <= 0.0:
             return False
         parting = way.opening_rate - model.lift * abs(way.trial_rate)
-        if parting[self.state == OPEN].min(initial=0.0) < -tests.elastic * fastest:
+        if parting[self.state == OPEN].min(initial=0.0) < -self.options.elastic * fastest:
             return False
-        if ahead > tests.far * size:
+        if ahead > _FAR * size:
             return True
-        if size < tests.growth * self.looked_at:
+        if size < _GROWTH * self.looked_at:
             return False
         self.looked_at = size
         holds = worst_residual(model, self.present()) <= self.certificate
         if holds or not self.kept_holds:
             self.kept, self.kept_holds = deepcopy(self.present()), holds
-        return holds and size > tests.confirmed * self.first_displacement
+        return holds and size > _CONFIRMED * self.first_displacement
 
     def _advance(self, velocity: FloatArray, speed: float, step: float) -> None:
         way = self.direction
@@ -341,9 +364,9 @@ class PathFollower:
 
     def _drifted(self) -> bool:
         """Whether the out-of-balance force has grown enough to factorise afresh (looked at every few changes)."""
-        if self.factor.count % self.options.updates.balance_every:
+        if self.factor.count % _BALANCE_EVERY:
             return False
-        return largest(self._out_of_balance()) > self.options.drift.removed * self.scale
+        return largest(self._out_of_balance()) > _REMOVED * self.scale
 
     def _breakpoint_rate(self, point: int, old: int, new: int) -> float:
         """b'v of a change of state and the velocity v of the present piece."""

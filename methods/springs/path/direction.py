@@ -26,6 +26,30 @@ from methods.springs.model.factor import Change, Factor, SingularTangent, refact
 from methods.springs.model.point_loops import point_strains
 from methods.springs.model.wall_model import WallModel
 
+_SURE_RATE = 1e-6
+"""Rate of a breakpoint function, over the fastest velocity, from which its sign in a new direction is beyond doubt."""
+_SOFT_VELOCITY = 1e4
+"""Multiple of the first piece's velocity, at the same rate of the multiplier, above which the fastest displacement has
+a pin."""
+_SOFT_RESPONSE = 1e8
+"""The same of the response of the wall with pins to the live load, which shows a further soft motion."""
+_HELD = 1e-3
+"""Share of the fastest displacement below which the pin no longer holds the motion, and is moved."""
+_DEFECT = 1e-7
+"""Share of the live load above which a velocity is refined, and the tangent factorised afresh when that no longer
+helps. On pieces with pins it is of the forces over a motion as long as the displacements."""
+_SOFT_ACCEPTED = 1e-4
+"""The same on pieces with pins when refinement no longer helps."""
+_CONTRACTION = 0.5
+"""Share of the defect before it that a step must leave at most, or refinement no longer helps."""
+_REFINEMENTS = 8
+"""Steps of refinement, at most."""
+_DOUBLED = 1e6
+"""Displacements (dimensionless) above which gap rates of pieces with pins are measured in doubled precision: up to
+there their rounding changes no force by more than 1e-9."""
+_PIVOT = 1e8
+"""|1 + b'y|, or its inverse, above which a change would cost digits."""
+
 
 @dataclass
 class _UnitResponse:
@@ -90,9 +114,9 @@ class PathDirection:
 
     def _solve_pinned(self, state: IntArray, careful: bool) -> None:
         """Solve for the velocity, its fastest displacement with a pin where the piece turns out to be soft."""
-        for _ in range(self.options.soft_motions.most):
+        for _ in range(self.options.pins):
             before, rising = self.velocity, self.speed
-            self.bordered = [int(np.argmax(np.abs(before)))] if self.size > self.options.soft_motions.velocity else []
+            self.bordered = [int(np.argmax(np.abs(before)))] if self.size > _SOFT_VELOCITY else []
             self._factorise(state, careful)
             self._solve(before, rising)
             if self._is_pinned_right():
@@ -101,8 +125,8 @@ class PathDirection:
     def _is_pinned_right(self) -> bool:
         """Whether a soft piece has a pin, where it moves."""
         if not self.bordered:
-            return self.size <= self.options.soft_motions.velocity
-        return bool(abs(self.velocity[self.bordered[0]]) >= self.options.soft_motions.held * largest(self.velocity))
+            return self.size <= _SOFT_VELOCITY
+        return bool(abs(self.velocity[self.bordered[0]]) >= _HELD * largest(self.velocity))
 
     def _factorise(self, state: IntArray, careful: bool) -> None:
         """Factorise the tangent, and where one with pins is still soft, pin the softest motion as well.
@@ -118,7 +142,7 @@ class PathDirection:
                 not self.bordered
                 or not self._is_soft()
                 or softest in self.bordered
-                or len(self.bordered) == self.options.soft_motions.most
+                or len(self.bordered) == self.options.pins
             ):
                 break
             self.bordered.insert(0 if self.factor.is_regularised else len(self.bordered), softest)
@@ -126,7 +150,7 @@ class PathDirection:
 
     def _is_soft(self) -> bool:
         """Whether the response to the live load shows a soft motion without a pin."""
-        return largest(self.response) > self.options.soft_motions.response * self.elastic
+        return largest(self.response) > _SOFT_RESPONSE * self.elastic
 
     def solve_first(self, state: IntArray) -> None:
         """Solve for the velocity with the factor as it stands, the multiplier rising."""
@@ -155,7 +179,7 @@ class PathDirection:
         """Whether the velocity leads back, beyond rounding, over the breakpoint just crossed with a rate b'v."""
         index, _, b = self.model.change(*change)
         along = float(b @ self.velocity[index])
-        return abs(along) > self.options.breakpoints.sure_rate * largest(self.velocity) and along * rate < 0.0
+        return abs(along) > _SURE_RATE * largest(self.velocity) and along * rate < 0.0
 
     def _hold(self, x: FloatArray, held: float = 0.0) -> tuple[FloatArray, float]:
         """Add m responses to the live load and shapes of the pins to x, so that the springs of the pins carry nothing.
@@ -233,15 +257,14 @@ class PathDirection:
             self.velocity /= unit
             self.tail /= unit
             self.speed /= unit
-        pivot = self.options.updates.pivot
-        if self.factor.count >= self.factor.capacity - 1 or not 1.0 / pivot < abs(1.0 + along) < pivot:
+        if self.factor.count >= self.factor.capacity - 1 or not 1.0 / _PIVOT < abs(1.0 + along) < _PIVOT:
             return False
         if not self._is_pinned_right():
             return False
         self.factor.update(y, index, b, 1.0 + along)
         if self.bordered:
             self.response -= y * (float(b @ self.response[index]) / (1.0 + along))
-            if self._is_soft() and len(self.bordered) < self.options.soft_motions.most:
+            if self._is_soft() and len(self.bordered) < self.options.pins:
                 return False
             for shape in self.unit_responses:
                 shape.value -= y * (float(b @ shape.value[index]) / (1.0 + along))
@@ -254,20 +277,19 @@ class PathDirection:
 
         A defect of a soft piece that refinement no longer lowers is borne, unless it is to be strictly straight.
         """
-        by = self.options.refinement
-        self.fine = bool(self.unit_responses) or (bool(self.bordered) and extent > by.doubled)
+        self.fine = bool(self.unit_responses) or (bool(self.bordered) and extent > _DOUBLED)
         self.measure()
         if self.bordered:
-            enough, bearable = by.defect / extent, (by.defect if strict else by.soft_accepted) / extent
+            enough, bearable = _DEFECT / extent, (_DEFECT if strict else _SOFT_ACCEPTED) / extent
         else:
-            enough = bearable = by.defect * self.live_size * abs(self.speed)
+            enough = bearable = _DEFECT * self.live_size * abs(self.speed)
         previous = np.inf
-        for count in range(by.steps):
+        for count in range(_REFINEMENTS):
             defect = self.model.out_of_balance(self.opening_rate, self.trial_rate, state, self.speed, 0.0)
             worst = largest(defect)
             if worst <= enough and (count > 0 or not self.factor.is_regularised):
                 return True
-            if not worst < by.contraction * previous:
+            if not worst < _CONTRACTION * previous:
                 return worst <= bearable
             previous = worst
             correction, rate = self.balance(defect)

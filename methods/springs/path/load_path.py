@@ -12,6 +12,15 @@ from methods.springs.path.continuation import PathFollower
 from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.rest.equilibrium import equilibrium
 
+_WITHIN = 300.0
+"""Displacements, in multiples of the first, up to which the history is still committed."""
+_TURN = 0.1
+"""Share of the peak by which a path may turn down before a jump from it is tried."""
+_RAISED = 1e-3
+"""Share of the peak by which the load is raised above it for a jump."""
+_LEAST_RISE = 1e-9
+"""Multiplier added to that."""
+
 
 @dataclass(frozen=True)
 class LoadPath:
@@ -49,9 +58,9 @@ def follow(
         OutOfTime: the time given is over; the record has the path so far.
     """
     options = follower.model.options
-    jumps = options.jump.most if jumps is None else jumps
-    committing, large = interval < np.inf, options.commits.within * follower.first_displacement
-    turn = options.jump.turn if jumps > 0 else np.inf
+    jumps = options.jumps if jumps is None else jumps
+    committing, large = interval < np.inf, _WITHIN * follower.first_displacement
+    turn = _TURN if jumps > 0 else np.inf
     commits, residual, hopeless = 0, 0.0, -np.inf
     while True:
         after = None
@@ -103,15 +112,14 @@ def _past_turn(follower: PathFollower, peak: float, jumps: int) -> tuple[PathFol
     """
     after = _jump(follower, peak) if jumps > 0 else None
     if after is not None:
-        return after, follower.model.options.jump.turn
+        return after, _TURN
     follower.refresh()
     return follower, np.inf
 
 
 def _jump(follower: PathFollower, peak: float) -> PathFollower | None:
     """The follower just above the peak, at the equilibrium that the springs reach from where it is; None if none."""
-    options = follower.model.options.jump
-    above = peak * (1.0 + options.above) + options.least
+    above = peak * (1.0 + _RAISED) + _LEAST_RISE
     answer = equilibrium(follower.model, follower.factor, follower.u, above, follower.history, commits=True)
     if not answer.found:
         return None

@@ -22,6 +22,17 @@ from methods.springs.model.point_loops import point_strains
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.path_record import PathSnapshot
 
+_EXACT = 1e-12
+"""Residual at which no more exact state is looked for."""
+_ZERO = 1e-13
+"""Multipliers up to this share of the load unit are zero to rounding, as of a wall at its limit under the dead load."""
+_CORRECTIONS = 4
+"""Newton steps with which forces and multiplier are solved for in one set of states."""
+_INERTIA = 1e-7
+"""Shift of a tangent in which several motions have no stiffness; iteration removes what it leaves."""
+_STILL = 1e-6
+"""Rates below this share of the fastest are none, where several mechanisms move at once."""
+
 _IDLE = 1e-12
 """Work of the live load on a mechanism, as a share of the sum of its terms' sizes, that is rounding."""
 
@@ -65,7 +76,7 @@ def finish(model: WallModel, present: PathSnapshot, kept: PathSnapshot | None = 
                 state = way(model, shot)
                 if best is None or state.worst < best.worst:
                     best = state
-            if best is not None and best.worst <= model.options.collapse.exact:
+            if best is not None and best.worst <= _EXACT:
                 return best
         if best is not None and best.worst <= model.options.collapse.certificate:
             return best
@@ -96,7 +107,7 @@ def _collapse_state(
     forces = model.end_forces(normal, shear)
     field = model.block_displacements(velocity)
     live = float(np.sum(assembly.live * field))
-    multiplier = 0.0 if abs(multiplier) <= model.options.collapse.zero * assembly.load_unit else multiplier
+    multiplier = 0.0 if abs(multiplier) <= _ZERO * assembly.load_unit else multiplier
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
 
 
@@ -142,13 +153,11 @@ def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
         point_strains(*model_points, motion, opening_rate, slip_rate)
 
     strain(shot.velocity)
-    still = np.maximum(abs(opening_rate), abs(slip_rate)) <= model.options.collapse.still * float(
-        abs(shot.velocity).max()
-    )
+    still = np.maximum(abs(opening_rate), abs(slip_rate)) <= _STILL * float(abs(shot.velocity).max())
     held = _regular(model, np.where(still, STICK, shot.state))
     velocity = shot.velocity
     for _ in range(model.options.collapse.rounds):
-        velocity = held.solve(model.options.collapse.inertia * model.inertia * velocity)
+        velocity = held.solve(_INERTIA * model.inertia * velocity)
         velocity = velocity / (float(abs(velocity).max()) or 1.0)
     factor = _regular(model, shot.state)
     opening, trial, multiplier = shot.opening.copy(), shot.trial.copy(), shot.multiplier
@@ -166,7 +175,7 @@ def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
 
 def _regular(model: WallModel, state: IntArray) -> SuperLU:
     try:
-        return sparse_lu(model.tangent(state, model.options.collapse.inertia))
+        return sparse_lu(model.tangent(state, _INERTIA))
     except SingularMatrix as error:
         raise SingularTangent(_NOT_UNIQUE) from error
 
@@ -199,7 +208,7 @@ def _corrected(
 ) -> float:
     """Bring the gaps (changed in place) and the multiplier into equilibrium, the fastest displacement held."""
     opening_rate, slip_rate = np.empty_like(opening), np.empty_like(trial)
-    for _ in range(model.options.collapse.corrections):
+    for _ in range(_CORRECTIONS):
         answer = factor.solve(model.out_of_balance(opening, trial, state, multiplier))
         if not np.isfinite(answer).all():
             raise SingularTangent(_NOT_UNIQUE)

@@ -13,6 +13,13 @@ from methods.springs.model.wall_model import WallModel
 from methods.springs.rest.newton import Equilibrium, newton
 from methods.springs.rest.pseudo_transient import PseudoTransient
 
+_FIRST_MULTIPLIER = 1e-3
+"""Of the first Newton step off the breakpoints on which gravity leaves many gap points."""
+_NEWTON_STEPS = 25
+"""At most, of each of the doubled steps that follow."""
+_STEPS_UNDER_DEAD_LOAD = 10_000
+"""Newton steps to the first rest of all, at most."""
+
 
 def equilibrium(
     model: WallModel,
@@ -37,9 +44,7 @@ def equilibrium(
 
 def gravity_state(model: WallModel, factor: Factor) -> Equilibrium:
     """Equilibrium under the dead load from the virgin state."""
-    return equilibrium(
-        model, factor, np.zeros(model.n_unknowns), 0.0, model.history, model.options.rest.steps_under_dead_load
-    )
+    return equilibrium(model, factor, np.zeros(model.n_unknowns), 0.0, model.history, _STEPS_UNDER_DEAD_LOAD)
 
 
 def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float) -> Equilibrium:
@@ -50,7 +55,7 @@ def first_step(model: WallModel, factor: Factor, rest: Equilibrium, scale: float
         scale: a multiplier of the order of collapse.
     """
     options = model.options.first_steps
-    multiplier = options.multiplier * min(1.0, scale)
+    multiplier = _FIRST_MULTIPLIER * min(1.0, scale)
     first = equilibrium(model, factor, rest.u, multiplier, rest.history)
     for _ in range(options.tries):
         if first.found:
@@ -66,8 +71,8 @@ def doubled(model: WallModel, factor: Factor, first: Equilibrium) -> Iterator[Eq
     Without commits the law has no history, so they lie on the path from the first.
     """
     options = model.options
-    while first.multiplier < options.load_raising.furthest:
-        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, options.first_steps.newton_steps)
+    while first.multiplier < options.furthest:
+        first = newton(model, factor, first.u, 2.0 * first.multiplier, first.history, _NEWTON_STEPS)
         if not first.found:
             return
         yield first

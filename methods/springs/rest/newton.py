@@ -17,6 +17,11 @@ from methods.springs.model.factor import Factor, SingularTangent, refactor_any
 from methods.springs.model.gap_law import same_forces
 from methods.springs.model.wall_model import WallModel, load_scale
 
+_STEPS = 40
+"""Of Newton, at most."""
+_RUNAWAY = 1e9
+"""Step, in dimensionless displacements over the load scale, after which none is to be expected."""
+
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
@@ -52,7 +57,7 @@ def newton(
         limit: on the steps; None for that of the options.
     """
     options = model.options.newton
-    limit = options.steps if limit is None else limit
+    limit = _STEPS if limit is None else limit
     virgin = not np.any(u)
     state = model.states(u, history, virgin)
     seen: set[bytes] = set()
@@ -66,7 +71,7 @@ def newton(
             step = factor.solve(model.residual(u, multiplier, history, state))
         except SingularTangent:
             break
-        if not np.isfinite(step).all() or np.abs(step).max() > options.runaway * scale:
+        if not np.isfinite(step).all() or np.abs(step).max() > _RUNAWAY * scale:
             break
         u = u + step
         iterations += 1

@@ -31,6 +31,51 @@ from methods.springs.model.point_loops import point_strains
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.rest.newton import Equilibrium, newton
 
+_SIGMA = 1.0
+"""Sigma, the inverse square of the pseudo-time step, at first."""
+_LEAST_SIGMA = 1e-4
+"""Sigma at least."""
+_MOST_SIGMA = 1e8
+"""Sigma at which the motion is given up."""
+_FASTER = 0.5
+"""Factor on sigma after an increment of at most `_EASY` Newton steps."""
+_SLOWER = 4.0
+"""Factor on sigma after an increment that was not found."""
+_EASY = 8
+"""Newton steps of an increment up to which sigma falls."""
+_RELAXATION = 0.5
+"""Share of their way to mu N that the limits go after an increment."""
+_BALANCED = 1e-12
+"""Out-of-balance force at the end of an increment, as a share of the load scale."""
+_ROUNDING = 1e-14
+"""The same as a share of kn times the displacements."""
+_STEPS = 60
+"""Newton steps of an increment, at most."""
+_HALVINGS = 12
+"""Of one line search, at most."""
+_SLOPE = 0.5
+"""Share of the slope at the start of a line search that is small enough at its end."""
+_STILL = 1e-9
+"""Forces of inertia, and changes of the friction limits (shares of the load scale), below which a wall is at rest."""
+_NEWTON_EVERY = 5
+"""Increments after which plain Newton is tried."""
+_NEWTON_STEPS = 12
+"""Of plain Newton."""
+_STEADY = 25
+"""Increments over which the forces of inertia of a wall that falls keep up."""
+_KEPT = 0.99
+"""Share of them left at the end."""
+_STEPS_TO_REST = 2000
+"""Newton steps from one rest to the next, at most."""
+_RISE = 1.0 / 64.0
+"""Of the multiplier, as a share of its scale."""
+_LONGER = 2.0
+"""Factor on the rise after a rest."""
+_WIDTH = 0.1
+"""Of a bracket, over its upper end, that is narrow enough."""
+_LOWEST = 1e-3
+"""Share of the scale below which a multiplier without rest is not halved again."""
+
 
 @dataclass(frozen=True, eq=False)
 class _Moment:
@@ -66,17 +111,16 @@ class PseudoTransient:
         Args:
             scale: a multiplier of the order of collapse.
         """
-        options = self.model.options.load_raising
-        rise, highest = options.first * scale, np.inf
-        while highest - self._rest.multiplier >= options.width * highest and options.lowest * scale < highest:
+        rise, highest = _RISE * scale, np.inf
+        while highest - self._rest.multiplier >= _WIDTH * highest and _LOWEST * scale < highest:
             goal = self._rest.multiplier + rise
             if goal >= highest:
                 goal = 0.5 * (self._rest.multiplier + highest)
-            if goal > options.furthest * scale:
+            if goal > self.model.options.furthest * scale:
                 return
             rest = self.move(goal)
             if rest.found:
-                rise *= options.longer
+                rise *= _LONGER
                 yield rest
             else:
                 highest = goal
@@ -88,39 +132,38 @@ class PseudoTransient:
         that does becomes steady. One that neither rests nor moves steadily is undecided.
         """
         model, now = self.model, self._now
-        rest, times = model.options.rest, model.options.pseudo_time
-        limit = rest.steps if limit is None else limit
+        limit = _STEPS_TO_REST if limit is None else limit
         scale, loads = load_scale(model, multiplier), model.dead + multiplier * model.live
         still = np.zeros_like(now.u)
         fall = ahead = still
-        sigma, increments, spent, before = times.first, 0, 0, np.inf
-        while spent < limit and sigma < times.most:
+        sigma, increments, spent, before = _SIGMA, 0, 0, np.inf
+        while spent < limit and sigma < _MOST_SIGMA:
             after, steps = self._increment(now, multiplier, sigma, ahead)
             spent += steps
             if after is None:
-                sigma, ahead = times.slower * sigma, still
+                sigma, ahead = _SLOWER * sigma, still
                 continue
             increments += 1
             rate = after.u - now.u
             lag = self._dissipated(after) - now.limit
             inertia, change = sigma * largest(model.inertia * rate), largest(lag)
             history = self._history(after, now.limit + lag)
-            if max(inertia, change) < rest.still * scale:
+            if max(inertia, change) < _STILL * scale:
                 return self._at_rest(after.u, multiplier, history, spent)
-            if increments % rest.newton_every == 0:
-                near = newton(model, self.factor, after.u, multiplier, history, rest.newton_steps)
+            if increments % _NEWTON_EVERY == 0:
+                near = newton(model, self.factor, after.u, multiplier, history, _NEWTON_STEPS)
                 spent += near.iterations
                 if near.found:
                     return self._at_rest(near.u, multiplier, history, spent)
             ahead = rate if change < inertia else still
-            if increments % rest.steady == 0:
-                if change < inertia and inertia > rest.kept * before and float(loads @ rate) > 0.0:
+            if increments % _STEADY == 0:
+                if change < inertia and inertia > _KEPT * before and float(loads @ rate) > 0.0:
                     fall = rate
                     break
                 before = inertia
-            now = self._committed(after, now.limit + times.relaxation * lag)
-            if steps <= times.easy and sigma > times.least:
-                sigma *= times.faster
+            now = self._committed(after, now.limit + _RELAXATION * lag)
+            if steps <= _EASY and sigma > _LEAST_SIGMA:
+                sigma *= _FASTER
         history = self._history(now, now.limit)
         return Equilibrium(False, multiplier, now.u, history, model.states(now.u, history), np.inf, fall, spent)
 
@@ -175,13 +218,13 @@ class PseudoTransient:
         Args:
             ahead: (N,) displacements of the increment that Newton starts from.
         """
-        model, resisting, options = self.model, self._resisting, self.model.options.increment
+        model, resisting = self.model, self._resisting
         opening_rate, slip_rate = self._strain_rates(ahead)
         opening, trial, moved = now.opening + opening_rate, now.trial + slip_rate, ahead
         residual = self._out_of_balance(now, multiplier, opening, trial) - sigma * model.inertia * moved
-        rounding = options.rounding * largest(model.kn) * largest(now.u)
-        balanced = options.balanced * load_scale(model, multiplier) + rounding
-        for count in range(1, options.steps + 1):
+        rounding = _ROUNDING * largest(model.kn) * largest(now.u)
+        balanced = _BALANCED * load_scale(model, multiplier) + rounding
+        for count in range(1, _STEPS + 1):
             model.deadline.ask()
             state, pressed, _ = self._frozen(opening, trial, now.limit)
             np.multiply(model.kn, pressed < 0.0, out=resisting.kn)
@@ -192,18 +235,18 @@ class PseudoTransient:
                 return None, count
             opening_rate, slip_rate = self._strain_rates(step)
             slope, share, low, high = float(step @ residual), 1.0, 0.0, 1.0
-            for _ in range(options.halvings):
+            for _ in range(_HALVINGS):
                 further = opening + share * opening_rate, trial + share * slip_rate, moved + share * step
                 residual = self._out_of_balance(now, multiplier, *further[:2]) - sigma * model.inertia * further[2]
                 left = float(step @ residual)
-                if abs(left) <= options.slope * abs(slope) or (share == 1.0 and left >= 0.0):
+                if abs(left) <= _SLOPE * abs(slope) or (share == 1.0 and left >= 0.0):
                     break
                 low, high = (share, high) if left > 0.0 else (low, share)
                 share = 0.5 * (low + high)
             opening, trial, moved = further
             if largest(residual) < balanced:
                 return replace(now, u=now.u + moved, opening=opening, trial=trial), count
-        return None, options.steps
+        return None, _STEPS
 
     def _strain_rates(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rates of the openings g and of the trial shears tau (P,) along displacements u (N,)."""
