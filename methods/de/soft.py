@@ -26,6 +26,16 @@ from methods.de.holds.order_bracket import LOOSE
 from methods.de.settings import LOOK, RISE, SoftSettings
 from methods.numerics.claims import at_limit, with_proof
 
+SHARE = 2e-3
+"""Of a small multiplier to which its bracket is narrowed, and of an undecided one the first rise above it, which
+doubles until the wall falls."""
+_LOW = 7
+"""Courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses."""
+_PATIENCE = 10
+"""Multiple of the length of a hold that the dead load has."""
+_AWAY = 300.0
+"""Multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls."""
+
 _BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 STIFFNESS = 1e6
@@ -34,24 +44,6 @@ low walls."""
 
 ROUNDING = 2e-4
 """Radius of corners where none is given, in length scales."""
-
-
-@dataclass(frozen=True)
-class SoftHoldTuning:
-    """Holds of a wall with deformable joints.
-
-    Attributes:
-        low: courses up to which a hold is no longer than `hold_steps`; above, with the square of the courses.
-        patience: multiple of the length of a hold that the dead load has.
-        away: multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls.
-        share: of a small multiplier to which its bracket is narrowed, and of an undecided one the first rise above it,
-            which doubles until the wall falls.
-    """
-
-    low: int = 7
-    patience: int = 10
-    away: float = 300.0
-    share: float = 2e-3
 
 
 @dataclass(eq=False)
@@ -65,7 +57,6 @@ class Holds:
         fell: multiplier of that fall.
         undecided: multipliers at which the wall neither rested nor fell.
         path: multiplier and displacement of the live load at every rest.
-        options: of the holds.
     """
 
     wall: SoftWall
@@ -76,13 +67,12 @@ class Holds:
     fell: float | None = None
     undecided: list[float] = field(default_factory=list)
     path: dict[str, list[float]] = field(default_factory=lambda: {"multiplier": [], "live_displacement": []})
-    options: SoftHoldTuning = SoftHoldTuning()
 
     def __post_init__(self) -> None:
         """The wall as it is."""
         self.rest = self.wall.save()
         self._statics = StaticLimit(self.wall.assembly)
-        high = number_of_courses(courses(self.wall.assembly)) / self.options.low
+        high = number_of_courses(courses(self.wall.assembly)) / _LOW
         self._looks = int(self.settings.hold_steps * max(1.0, high**2)) // LOOK
 
     def rests(self, multiplier: float) -> bool:
@@ -93,7 +83,7 @@ class Holds:
         """Hold the wall at a multiplier from its last rest, and note what came of it."""
         wall = self.wall
         wall.load(multiplier)
-        end = self._settled(self._looks * (1 if multiplier else self.options.patience))
+        end = self._settled(self._looks * (1 if multiplier else _PATIENCE))
         state = end.state
         if state is State.HELD:
             self.rest = wall.save()
@@ -116,7 +106,7 @@ class Holds:
         wall, settings = self.wall, self.settings
         before = self.rest[0]
         load = wall.assembly.dead + wall.multiplier * wall.assembly.live
-        away = self.options.away * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
+        away = _AWAY * float(np.abs(before[:, :2]).max()) if np.any(before[:, :2]) else np.inf
         watch = ConvergenceMonitor(settings.held_residual, settings.held_residual, motion_units(wall.assembly))
         places, start = before, wall.steps
         affordable, deadline = settings.relaxations * looks, Deadline.of_run()
@@ -179,7 +169,7 @@ class DeformableJoints(Solver):
         """The answer for a wall that stands its dead load, in multiples of the multiplier that equals it."""
         settings = holds.settings
         cap = settings.load_cap * unit
-        step, accuracy, share = settings.load_step * unit, settings.accuracy * unit, holds.options.share
+        step, accuracy, share = settings.load_step * unit, settings.accuracy * unit, SHARE
         stood, fell = raise_until_it_falls(holds.rests, cap, step, accuracy, settings.load_growth, share)
         if fell is not None:
             stood, fell = _in_small_steps(holds, stood, min(accuracy, share * fell))
@@ -266,7 +256,7 @@ def _better(answer: Answer, again: Answer) -> Answer:
 
 def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
     """The lowest multiplier tried above an undecided one at which the wall falls; None up to the cap."""
-    rise = holds.options.share * multiplier
+    rise = SHARE * multiplier
     while multiplier + rise <= cap:
         if holds.hold(multiplier + rise) is State.MOVING:
             return multiplier + rise

@@ -9,8 +9,6 @@ Source: P. A. Cundall, Distinct element models of rock and soil structure, 1987,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
@@ -22,37 +20,30 @@ from methods.de.engines.soft_wall import SoftWall
 from methods.de.settings import LOOK, SoftPathSettings, SoftSettings
 from methods.de.soft import ROUNDING, STIFFNESS
 
+_FIRST = 0.05
+"""Step, in displacements of a joint of one length scale under the mean weight of a block: nothing has opened or slipped
+then."""
+_LONGER = 1.3
+"""Factor on the next step."""
+_SPEED = 0.003
+"""Of the supports, in those displacements a time step. The slower, the fewer bricks slide by their own impetus: against
+the path of `fe` they end 0.6 % away at 0.01 and 0.05 % at 0.001."""
+_STEADY = 3.0
+"""Multiple of the displacement over which the reaction has to stay the same."""
+_SAME = 1e-3
+"""Stiffness of a mechanism, as a share of that of the wall at rest, beside what moves with the arms of its loads: the
+dead load over the length scale. A wall that is about to become a mechanism has 1e-2 of it."""
+_LEVEL = 5e-3
+"""Change of a constant reaction at most, as a share of it or of the dead load, whichever is more: what the judge leaves
+open. Over many elastic displacements the stiffness of a mechanism allows more."""
+
+MOST_STEPS = 50
+"""Of the supports: a ring of 100 voussoirs needs 47 to become a mechanism, a wall of bricks 33."""
 NO_REST = "The wall with deformable joints does not come to rest under its dead load."
 
 
-@dataclass(frozen=True)
-class CarriedSteps:
-    """Steps of the supports.
-
-    Attributes:
-        first: step, in displacements of a joint of one length scale under the mean weight of a block: nothing has
-            opened or slipped then; longer: factor on the next.
-        most: number of steps: a ring of 100 voussoirs needs 47 to become a mechanism, a wall of bricks 33.
-        speed: of the supports, in those displacements a time step. The slower, the fewer bricks slide by their own
-            impetus: against the path of `fe` they end 0.6 % away at 0.01 and 0.05 % at 0.001.
-        steady: multiple of the displacement over which the reaction has to stay the same.
-        same: stiffness of a mechanism, as a share of that of the wall at rest, beside what moves with the arms of its
-            loads: the dead load over the length scale. A wall that is about to become a mechanism has 1e-2 of it.
-        level: change of a constant reaction at most, as a share of it or of the dead load, whichever is more: what the
-            judge leaves open. Over many elastic displacements the stiffness of a mechanism allows more.
-    """
-
-    first: float = 0.05
-    longer: float = 1.3
-    most: int = 50
-    speed: float = 0.003
-    steady: float = 3.0
-    same: float = 1e-3
-    level: float = 5e-3
-
-
 def support_path(
-    assembly: Assembly, gives_way: bool, settings: SoftSettings, steps: CarriedSteps = CarriedSteps()
+    assembly: Assembly, gives_way: bool, settings: SoftSettings, most: int = MOST_STEPS
 ) -> SupportPath | str:
     """Carry the supports from rest under the dead load until the reaction is constant.
 
@@ -62,7 +53,7 @@ def support_path(
     Args:
         assembly: dry, with `support_motion`.
         gives_way: whether the supports move as prescribed; else backwards.
-        settings: of joints, corners and rests; steps: of the displacement.
+        settings: of joints, corners and rests; most: steps of the displacement.
 
     Returns:
         The path, or why there is none.
@@ -78,16 +69,16 @@ def support_path(
     if not path.rests(0.0):
         return NO_REST
     give = mean / (stiffness * size)
-    step, reason = steps.first * give, f"The reaction still changes after {steps.most} steps."
-    for _ in range(steps.most):
-        path.carry(step, step / (steps.speed * give))
+    step, reason = _FIRST * give, f"The reaction still changes after {most} steps."
+    for _ in range(most):
+        path.carry(step, step / (_SPEED * give))
         if not path.rests(step):
             reason = f"The wall does not come to rest at the displacement {path.displacement[-1] + step:.6g}."
             break
-        begins = path.constant_from(steps)
+        begins = path.constant_from()
         if begins is not None:
             return path.ended(begins, "")
-        step *= steps.longer
+        step *= _LONGER
     return path.ended(None, reason)
 
 
@@ -124,19 +115,19 @@ class _Path:
         self._places.append(wall.places.copy())
         return True
 
-    def constant_from(self, steps: CarriedSteps) -> float | None:
+    def constant_from(self) -> float | None:
         """Displacement from which the reaction has been constant for long enough; None where it is not."""
         far = np.array(self.displacement)
         change = abs(np.array(self._reaction) - self._reaction[-1])
-        before = np.flatnonzero(far[1:] * steps.steady <= far[-1]) + 1
+        before = np.flatnonzero(far[1:] * _STEADY <= far[-1]) + 1
         if not len(before):
             return None
         begins = int(before[-1])
         at_rest = abs(self._reaction[1] - self._reaction[0]) / far[1]
         assembly = self._wall.assembly
         work = assembly.force_scale * self._fastest
-        of_mechanism = (steps.same * at_rest + work / assembly.length_scale) * (far[-1] - far[begins])
-        allowed = min(of_mechanism, steps.level * max(work, abs(self._reaction[-1])))
+        of_mechanism = (_SAME * at_rest + work / assembly.length_scale) * (far[-1] - far[begins])
+        allowed = min(of_mechanism, _LEVEL * max(work, abs(self._reaction[-1])))
         return float(far[begins]) if change[begins:].max() <= allowed else None
 
     def ended(self, constant_from: float | None, reason: str) -> SupportPath:

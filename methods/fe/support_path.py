@@ -26,29 +26,21 @@ from methods.springs.path.breakpoints import next_breakpoint, strain_rates
 from methods.springs.rest.equilibrium import equilibrium, gravity_state
 from methods.springs.rest.newton import Equilibrium
 
-
-@dataclass(frozen=True)
-class SupportSteps:
-    """Steps of the imposed displacement.
-
-    Attributes:
-        first: step, in displacements of a gap spring under the mean weight of a block: the wall is still elastic then.
-        longer: factor on the next; most: number of steps. A plateau that is not reached at longer^most first steps,
-            some 1e9 times the elastic displacement, is beyond the digits of the gaps.
-        steady: multiple of the displacement of a mechanism, or of the largest gap or slip at rest if that is more, up
-            to which the reaction has to stay the same where gaps still change their states on it.
-        same: to this share of the dead load, a hundred times what equilibria that are found by relaxation leave out of
-            balance.
-        noise: gap rates below this share of the speed of the supports count as zero on the plateau, as do rates of
-            breakpoint functions below this share of the fastest gap rate: the tangent is solved to 1e-12 or so of them.
-    """
-
-    first: float = 0.05
-    longer: float = 1.3
-    steady: float = 10.0
-    same: float = 1e-7
-    most: int = 80
-    noise: float = 1e-9
+MOST_STEPS = 80
+"""Of the displacement. A plateau that is not reached at `_LONGER` to this power first steps, some 1e9 times the elastic
+displacement, is beyond the digits of the gaps."""
+_FIRST = 0.05
+"""Step, in displacements of a gap spring under the mean weight of a block: the wall is still elastic then."""
+_LONGER = 1.3
+"""Factor on the next step."""
+_STEADY = 10.0
+"""Multiple of the displacement of a mechanism, or of the largest gap or slip at rest if that is more, up to which the
+reaction has to stay the same where gaps still change their states on it."""
+_SAME = 1e-7
+"""To this share of the dead load, a hundred times what equilibria that are found by relaxation leave out of balance."""
+_NOISE = 1e-9
+"""Gap rates below this share of the speed of the supports count as zero on the plateau, as do rates of breakpoint
+functions below this share of the fastest gap rate: the tangent is solved to 1e-12 or so of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +73,14 @@ def support_path(
     assembly: Assembly,
     gives_way: bool,
     settings: GapSpringsSettings,
-    steps: SupportSteps = SupportSteps(),
+    most: int = MOST_STEPS,
 ) -> SupportPath | str:
     """Impose the motion of the supports from rest under the dead load until the reaction is constant.
 
     Args:
         assembly: with `support_motion`, without ties, props and compressive strength.
         gives_way: whether the supports move as prescribed; else backwards.
-        settings: of the springs; steps: of the displacement.
+        settings: of the springs; most: steps of the displacement.
 
     Returns:
         The path, or why there is none.
@@ -102,22 +94,22 @@ def support_path(
     if not gravity.found:
         return "The gap springs find no equilibrium under the dead load."
     imposed = _ImposedMotion.of(model, 1.0 if gives_way else -1.0)
-    points, last, reason = _followed(imposed, factor, gravity, steps)
+    points, last, reason = _followed(imposed, factor, gravity, most)
     if last is None:
         return _path(points, None, None, reason)
-    return _path(points, last.mechanism(gives_way), last.point.displacement - last.length_behind(steps.noise), "")
+    return _path(points, last.mechanism(gives_way), last.point.displacement - last.length_behind(_NOISE), "")
 
 
 def _followed(
-    imposed: _ImposedMotion, factor: Factor, gravity: Equilibrium, steps: SupportSteps
+    imposed: _ImposedMotion, factor: Factor, gravity: Equilibrium, most: int
 ) -> tuple[list[_ImposedPoint], _Piece | None, str]:
     """The points up to the plateau, the mechanism there, and why there is none where that is None."""
-    model, kept, step = imposed.model, 0, steps.first
+    model, kept, step = imposed.model, 0, _FIRST
     assembly = model.assembly
-    same = steps.same * assembly.force_scale * fastest_vertex(assembly, assembly.support_motion)
+    same = _SAME * assembly.force_scale * fastest_vertex(assembly, assembly.support_motion)
     points, last = [_ImposedPoint(0.0, model, gravity)], None
     largest = points[0].largest_strain
-    for _ in range(steps.most):
+    for _ in range(most):
         point = _imposed(imposed, factor, gravity, points[-1], step)
         if not point.rest.found:
             place = point.displacement * model.displacement
@@ -128,14 +120,14 @@ def _followed(
         piece = _Piece.at(imposed, factor, point)
         if piece is None or not piece.is_mechanism():
             piece = _Piece.between(imposed, points[-2], point)
-        if piece.is_mechanism() and piece.is_last(steps.noise):
+        if piece.is_mechanism() and piece.is_last(_NOISE):
             return points, piece, ""
         if piece.is_mechanism() and last is None:
             last, kept = piece, len(points)
-        if last is not None and point.displacement > steps.steady * max(largest, last.point.displacement):
+        if last is not None and point.displacement > _STEADY * max(largest, last.point.displacement):
             return points[:kept], last, ""
-        step *= steps.longer
-    return points, None, f"The reaction still changes after {steps.most} steps."
+        step *= _LONGER
+    return points, None, f"The reaction still changes after {most} steps."
 
 
 @dataclass(frozen=True, eq=False)

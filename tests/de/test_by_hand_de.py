@@ -22,9 +22,9 @@ from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.engines.strips import CannotModel, require_lengths
 from methods.de.settings import ReleaseSettings, SoftSettings, SweepSettings
-from methods.de.soft import DeformableJoints, Holds, _fall_above, _saying_soft
+from methods.de.soft import SHARE, DeformableJoints, Holds, _fall_above, _saying_soft
 from methods.de.uneven.gapped import GappedTuning, GappedWall
-from methods.de.uneven.settled_contacts import SettlingTuning, with_contacts
+from methods.de.uneven.settled_contacts import POINT, with_contacts
 from tests.walls import assembly, running_bond, stack
 
 
@@ -64,7 +64,7 @@ def test_a_block_on_its_corner_has_a_short_contact_about_that_corner():
     space.advance(1)
     structure, single = with_contacts(wall, space, space.places())
     assert (single, structure.n_interfaces) == (1, 1)
-    assert structure.length == pytest.approx([SettlingTuning().point * wall.length_scale])
+    assert structure.length == pytest.approx([POINT * wall.length_scale])
     middle = 0.5 * (structure.end1[0] + structure.end2[0])
     assert middle == pytest.approx(corner, abs=0.01 * wall.length_scale)
     along = structure.end2[0] - structure.end1[0]
@@ -189,5 +189,5 @@ def test_the_fall_above_a_multiplier_is_sought_by_rises_that_double():
     wall = assembly(stack(1, 0.4, 0.2), 0.5)
     holds = Holds(SoftWall(wall, 1e4, 0.5, 1e-3), SoftSettings())
     assert holds.rests(0.0)
-    assert _fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * holds.options.share * 0.45)
+    assert _fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * SHARE * 0.45)
     assert _fall_above(holds, 0.45, 0.48) is None

@@ -12,7 +12,7 @@ from methods.de.engines.engine import Engine
 from methods.de.holds import order_bracket
 from methods.de.holds.load_step import LoadStep, State
 from methods.de.holds.motion import MotionProof, StaticLimit
-from methods.de.holds.order_bracket import LOOSE, BracketSearch, BracketTuning, OrderBracket
+from methods.de.holds.order_bracket import CREEPING, LOOSE, BracketSearch, OrderBracket
 from methods.de.settings import HoldSettings
 from tests.walls import assembly, stack
 
@@ -76,4 +76,4 @@ def test_a_search_that_is_no_longer_cheap_ends_within_its_accuracy(monkeypatch: 
     """Holds just below and above collapse took most of the time; the middle moves by .03 % on 105 bricks."""
     found = searched(monkeypatch, 0.4726, 0.4726 + 1e-9)
     assert found.width is not None
-    assert HoldSettings().accuracy < found.width <= BracketTuning().creeping
+    assert HoldSettings().accuracy < found.width <= CREEPING

@@ -17,7 +17,7 @@ from harness.model.errors import InputError
 from harness.model.followed import SupportPath
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.settings import SoftSettings
-from methods.de.support_path import NO_REST, CarriedSteps, support_path
+from methods.de.support_path import NO_REST, support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
 from tests.moving_supports import BRICKS, both, bricks, keystone, path_of, semicircle, thrusts, tilted, values, weight
@@ -99,7 +99,7 @@ def test_judge_rejects_what_is_no_plateau():
 
 
 def test_path_that_ends_before_the_reaction_is_constant():
-    found = support_path(bricks(0.65).assembly, True, SoftSettings(), CarriedSteps(most=3))
+    found = support_path(bricks(0.65).assembly, True, SoftSettings(), most=3)
     assert isinstance(found, SupportPath)
     assert (found.mechanism, found.constant_from) == (None, None)
     assert found.reason == "The reaction still changes after 3 steps."

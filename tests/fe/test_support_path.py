@@ -17,7 +17,7 @@ from harness.engine.reaction_judge import judge_plateau
 from harness.model.errors import InputError
 from harness.model.followed import SupportPath
 from methods.fe.settings import GapSpringsSettings
-from methods.fe.support_path import SupportSteps, support_path
+from methods.fe.support_path import support_path
 from tests.commands import drystone as command
 from tests.la.test_reaction_command import DOWN, PARTS, WEIGHT, data, extremes
 from tests.moving_supports import (
@@ -190,7 +190,7 @@ def test_what_fe_does_not_take_is_refused():
 
 
 def test_a_path_without_an_end_has_no_plateau():
-    path = support_path(bricks(0.65).assembly, True, GapSpringsSettings(), SupportSteps(most=3))
+    path = support_path(bricks(0.65).assembly, True, GapSpringsSettings(), most=3)
     assert isinstance(path, SupportPath)
     assert (path.mechanism, path.constant_from) == (None, None)
     assert path.reason == "The reaction still changes after 3 steps."
@@ -240,7 +240,7 @@ def test_judge_rejects_what_is_no_plateau():
     on_the_way = np.arange(len(gives.reaction)) == 1  # its reaction is changing: the end is as it was
     assert not accepted(reaction=np.where(on_the_way, 2.0 * gives.extremes[1], gives.reaction))
     assert not accepted(reaction=np.where(on_the_way, 0.5 * gives.extremes[0], gives.reaction))
-    elastic = support_path(wall.assembly, True, GapSpringsSettings(), SupportSteps(most=3))
+    elastic = support_path(wall.assembly, True, GapSpringsSettings(), most=3)
     assert isinstance(elastic, SupportPath)
     assert not accepted(forces=elastic.forces, reaction=elastic.reaction, displacement=elastic.displacement)
 

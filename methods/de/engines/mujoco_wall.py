@@ -24,6 +24,17 @@ from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import StripShape, require_lengths
 from methods.de.settings import MujocoSettings
 
+_TOLERANCE = 1e-14
+"""Of the contact solver."""
+_SEARCH_TOLERANCE = 1e-6
+"""Of its line search."""
+_LOW = 6.0
+"""Courses above which friction stiffens with them."""
+_FORCE_STEPS = 200
+"""Time steps over which contact forces are averaged."""
+_EXPLODED = 1e4
+"""Acceleration, as a part of gravity, that no wall reaches: a failure of the contact solver, not a collapse."""
+
 
 @dataclass(frozen=True)
 class SoftContacts:
@@ -60,21 +71,11 @@ class MujocoTuning:
     Attributes:
         contacts: how they are pulled back; shape: of the strips that they lie on.
         uniform: masses in proportion to areas, for what does not settle with light tops.
-        tolerance, search_tolerance: of the solver and its line search.
-        low: courses above which friction stiffens with them.
-        force_steps: time steps over which contact forces are averaged.
-        exploded: acceleration, as a part of gravity, that no wall reaches: a failure of the contact solver, not a
-            collapse.
     """
 
     contacts: SoftContacts = SoftContacts()
     shape: StripShape = StripShape()
     uniform: MassScaling = MassScaling(0.0, 0.99)
-    tolerance: float = 1e-14
-    search_tolerance: float = 1e-6
-    low: float = 6.0
-    force_steps: int = 200
-    exploded: float = 1e4
 
 
 class SolverFailed(ArithmeticError):
@@ -170,10 +171,10 @@ class MujocoWall:
         option.integrator = self._mujoco.mjtIntegrator.mjINT_EULER
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.solver = self._mujoco.mjtSolver.mjSOL_NEWTON
-        option.impratio = friction_ratio * max(1.0, self.courses / self._options.low)
+        option.impratio = friction_ratio * max(1.0, self.courses / _LOW)
         option.iterations = iterations
-        option.tolerance = self._options.tolerance
-        option.ls_tolerance = self._options.search_tolerance
+        option.tolerance = _TOLERANCE
+        option.ls_tolerance = _SEARCH_TOLERANCE
         return spec
 
     def _add_blocks(self, spec: Any) -> None:
@@ -258,10 +259,7 @@ class MujocoWall:
         for _ in range(steps):
             self._mujoco.mj_step(self._model, self._data)
         self.steps += steps
-        if (
-            self._was_reset()
-            or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < self._options.exploded
-        ):
+        if self._was_reset() or not float(np.abs(self._data.qvel).max(initial=0.0)) * self._drag < _EXPLODED:
             raise SolverFailed("MuJoCo's contact solver did not converge: the blocks separated")
 
     def _was_reset(self) -> bool:
@@ -306,10 +304,10 @@ class MujocoWall:
         What chattering remains in a held state cancels in the mean, which obeys friction as every step does.
         """
         total = np.zeros((self.interfaces, 3))
-        for _ in range(self._options.force_steps):
+        for _ in range(_FORCE_STEPS):
             self.advance(1)
             self._add_forces(total)
-        return total * (self._force / self._options.force_steps)
+        return total * (self._force / _FORCE_STEPS)
 
     def _add_forces(self, total: FloatArray) -> None:
         """Add the contact forces of the last time step.

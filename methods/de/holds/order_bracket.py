@@ -12,33 +12,24 @@ from methods.de.holds.load_step import LoadStep, State, hold, least_motion, sett
 from methods.de.holds.motion import MotionProof, StaticLimit
 from methods.de.settings import HoldSettings
 
-
-@dataclass(frozen=True)
-class BracketTuning:
-    """The search of one insertion order.
-
-    Attributes:
-        wide: relative width of [held, moving] above which undecided holds make the search look for a lower moving
-            state.
-        rounds: bisections at most, each above the highest multiplier held so far.
-        creeping: accuracy of a search that is no longer cheap: just under collapse a wall creeps, just above it moves
-            slowly, and narrower costs much.
-        cheap: contact updates up to which a search keeps to the full accuracy.
-        growth: factor on load steps after an undecided one.
-        patience: multiple of the length of a hold that the dead load has.
-        halved: residual of a motion, or live load as a part of the dead load, in residuals that show a motion, up to
-            which half of the multiplier would show none.
-    """
-
-    wide: float = 5e-3
-    rounds: int = 4
-    creeping: float = 2e-3
-    cheap: int = 1_000_000
-    growth: float = 2.0
-    patience: int = 4
-    halved: float = 2.0
+_WIDE = 5e-3
+"""Relative width of [held, moving] above which undecided holds make the search look for a lower moving state."""
+_ROUNDS = 4
+"""Bisections at most, each above the highest multiplier held so far."""
+_CHEAP = 1_000_000
+"""Contact updates up to which a search keeps to the full accuracy."""
+_GROWTH = 2.0
+"""Factor on load steps after an undecided one."""
+_PATIENCE = 4
+"""Multiple of the length of a hold that the dead load has."""
+_HALVED = 2.0
+"""Residual of a motion, or live load as a part of the dead load, in residuals that show a motion, up to which half of
+the multiplier would show none."""
 
 
+CREEPING = 2e-3
+"""Accuracy of a search that is no longer cheap: just under collapse a wall creeps, just above it moves slowly, and
+narrower costs much."""
 LOOSE = 0.01
 """Widest bracket, as a part of the multiplier, that still counts as converged: twice the accuracy that is stated, so
 that its middle keeps it."""
@@ -123,7 +114,6 @@ class BracketSearch:
         statics: the multipliers that statics bears on the wall.
         unit: multiplier at which the live load equals the dead load.
         order: name of the order.
-        options: of the search.
 
     Attributes:
         states: multiplier and contact state of the engine of everything that was held, the highest last.
@@ -136,9 +126,7 @@ class BracketSearch:
         statics: StaticLimit,
         unit: float,
         order: str,
-        options: BracketTuning = BracketTuning(),
     ) -> None:
-        self._options = options
         self.engine = engine
         self.settings = settings
         self.statics = statics
@@ -164,7 +152,7 @@ class BracketSearch:
         if found.state is not None:
             self.engine.restore(found.state)
         self.engine.load(multiplier)
-        patience = self._options.patience if multiplier == 0.0 else 1
+        patience = _PATIENCE if multiplier == 0.0 else 1
         end = hold(self.engine, self.settings, self.statics, patience)
         found.steps = self.engine.steps
         found.holds += 1
@@ -195,12 +183,12 @@ class BracketSearch:
             if state is State.MOVING:
                 return
             if state is State.UNDECIDED:
-                growth *= self._options.growth
+                growth *= _GROWTH
             self.found.capped = state is State.HELD and multiplier >= cap
 
     def _narrow(self) -> None:
         """Bisect until the bracket is not loose: again above what turned out to be held beyond an undecided hold."""
-        for _ in range(self._options.rounds):
+        for _ in range(_ROUNDS):
             held = self.found.held
             self._bisect()
             if self._spent() or self.found.shows(True) or self.found.held == held:
@@ -217,10 +205,10 @@ class BracketSearch:
         high = min(top)
         moves = found.moving == high
         while not self._spent():
-            cheap = self.engine.steps * self.engine.interfaces < self._options.cheap
-            accuracy = self.settings.accuracy if cheap else max(self.settings.accuracy, self._options.creeping)
+            cheap = self.engine.steps * self.engine.interfaces < _CHEAP
+            accuracy = self.settings.accuracy if cheap else max(self.settings.accuracy, CREEPING)
             left = min(found.moving_residual, high / self.unit)
-            vanishing = left <= self._options.halved * least_motion(self.settings)
+            vanishing = left <= _HALVED * least_motion(self.settings)
             found.nothing = found.held == 0.0 and moves and vanishing
             if found.nothing:
                 return
@@ -230,7 +218,7 @@ class BracketSearch:
             state = self._try(middle).state
             if state is not State.HELD:
                 high, moves = middle, state is State.MOVING
-        if found.moving is None or found.moving - found.held > self._options.wide * found.moving:
+        if found.moving is None or found.moving - found.held > _WIDE * found.moving:
             self._raise_upper_end(high)
 
     def _raise_upper_end(self, high: float) -> None:
@@ -239,7 +227,7 @@ class BracketSearch:
         None is asked below an undecided multiplier either.
         """
         found = self.found
-        step = self._options.creeping * high
+        step = CREEPING * high
         multiplier = high + step
         while not self._spent() and multiplier <= self.settings.load_cap * self.unit:
             if found.moving is not None and multiplier >= found.moving:
@@ -247,7 +235,7 @@ class BracketSearch:
             doubtful = any(multiplier <= m < (found.moving or np.inf) for m in found.undecided)
             if not doubtful and self._try(multiplier).state is State.MOVING:
                 return
-            step *= self._options.growth
+            step *= _GROWTH
             multiplier += step
 
 

@@ -25,6 +25,18 @@ from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.rest.newton import Equilibrium, newton
 from methods.springs.rest.pseudo_transient import PseudoTransient
 
+_CLOSED = 3.0
+"""Opening, in radii of the blocks in the engine, up to which a gap counts as closed at first: it keeps blocks so far
+apart."""
+_STILL = 2e-4
+"""Displacement, in length scales, below which the blocks are not moved again."""
+_STRIDE = 0.02
+"""Displacement, in length scales, by which a wall without rest is moved on at a time."""
+_MOVES = 30
+"""Times that the blocks are moved under one load, at most."""
+_NEWTON_STEPS = 600
+"""Of one motion to rest, at most."""
+
 
 @dataclass(frozen=True)
 class GappedTuning:
@@ -34,21 +46,10 @@ class GappedTuning:
         stiffness: kn of a gap point in mean dead loads of a block over the length scale: springs give far less than
             gaps are wide.
         radius: of the blocks in the engine, in length scales.
-        closed: opening, in such radii, up to which a gap counts as closed at first: the engine
-            keeps blocks so far apart.
-        still: displacement, in length scales, below which the blocks are not moved again.
-        stride: displacement, in length scales, by which a wall without rest is moved on at a time.
-        moves: times that the blocks are moved under one load, at most.
-        newton_steps: of one motion to rest, at most.
     """
 
     stiffness: float = 1e4
     radius: float = BodyTuning().radius
-    closed: float = 3.0
-    still: float = 2e-4
-    stride: float = 0.02
-    moves: int = 30
-    newton_steps: int = 600
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,7 @@ class GappedWall:
         self._first = places
         self.moved: list[float] = []
         structure, openings = self._edges.at(places)
-        self._shift = np.where(openings < options.closed * options.radius * assembly.length_scale, -openings, 0.0)
+        self._shift = np.where(openings < _CLOSED * options.radius * assembly.length_scale, -openings, 0.0)
         none = np.zeros(2 * assembly.n_interfaces)
         self.rest = _GappedRest(places, places, structure, none, none)
 
@@ -111,27 +112,26 @@ class GappedWall:
 
     def rests(self, multiplier: float) -> bool:
         """Whether the wall comes to rest at a multiplier; if not it stays where it rested last."""
-        options = self._options
         unit, units, before = self.assembly.length_scale, motion_units(self.assembly), self.rest.moved
         places, shear, rest = before, self.rest.shear, None
-        for _ in range(options.moves):
+        for _ in range(_MOVES):
             structure, openings = self._edges.at(places)
             model = self._model(structure, openings, shear)
-            found = _at_rest(model, multiplier, options.newton_steps)
+            found = _at_rest(model, multiplier, _NEWTON_STEPS)
             step = model.block_displacements(found.u)
             size = float(np.abs(step / units).max(initial=0.0))
             if found.found:
                 pressed, shear = model.forces(found.u, found.history, found.state)
                 rest = _GappedRest(places, places + step, structure, pressed, shear)
             elif np.isfinite(size):
-                rest, step = None, step * min(1.0, options.stride / max(size, options.still))
+                rest, step = None, step * min(1.0, _STRIDE / max(size, _STILL))
             places = places + step
             if not np.abs(places - before)[:, :2].max(initial=0.0) < self._reach * unit:
                 load = self.assembly.dead + multiplier * self.assembly.live
                 if by_travel(self.assembly, load, places - before, self._reach) is not None:
                     self.moved.append(multiplier)
                 return False
-            if rest is not None and size < options.still:
+            if rest is not None and size < _STILL:
                 break
         if rest is not None:
             self.rest = rest

@@ -19,27 +19,18 @@ from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.de.settings import REACH, Faces
 
-
-@dataclass(frozen=True)
-class SettlingTuning:
-    """How a wall of whole blocks comes to rest, and the contacts it is given.
-
-    Attributes:
-        damping: part of the velocity kept by a unit of time sqrt(length scale / gravity).
-        look: time steps from one look at the places to the next.
-        still, slow: change of the places [length scales, radians] from look to look, and velocity [unit lengths per
-            unit time], below which the wall is at rest.
-        point: length given to a contact at a single point, as a part of the length scale: methods need two contact
-            points.
-        segment: least distance of two contact points, as a part of the length scale, that makes them a segment.
-    """
-
-    damping: float = 0.01
-    look: int = 250
-    still: float = 1e-5
-    slow: float = 1e-4
-    point: float = 1e-3
-    segment: float = 1e-6
+POINT = 1e-3
+"""Length given to a contact at a single point, as a part of the length scale: methods need two contact points."""
+_DAMPING = 0.01
+"""Part of the velocity kept by a unit of time sqrt(length scale / gravity)."""
+_LOOK = 250
+"""Time steps from one look at the places to the next."""
+_STILL = 1e-5
+"""Change of the places [length scales, radians] from look to look below which the wall is at rest."""
+_SLOW = 1e-4
+"""Velocity [unit lengths per unit time] below which the wall is at rest."""
+_SEGMENT = 1e-6
+"""Least distance of two contact points, as a part of the length scale, that makes them a segment."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +81,6 @@ def settle_uneven(
     faces: Faces = "both",
     seed: int = 0,
     most_steps: int = 20_000,
-    options: SettlingTuning = SettlingTuning(),
 ) -> Settled:
     """Let the wall of uneven blocks come to rest under its dead load and take its contacts.
 
@@ -100,18 +90,15 @@ def settle_uneven(
         faces: which faces are uneven.
         seed: seed of the cuts.
         most_steps: most time steps of the settling.
-        options: how it comes to rest.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = PymunkBlocks(assembly, outlines, options.damping)
-    before, at_rest = _come_to_rest(space, most_steps, np.inf, options)
-    settled, single = with_contacts(assembly, space, before, options)
+    space = PymunkBlocks(assembly, outlines, _DAMPING)
+    before, at_rest = _come_to_rest(space, most_steps, np.inf)
+    settled, single = with_contacts(assembly, space, before)
     return Settled(settled, at_rest, outlines, before, single)
 
 
-def _come_to_rest(
-    space: PymunkBlocks, most_steps: int, reach: float, options: SettlingTuning
-) -> tuple[FloatArray, bool]:
+def _come_to_rest(space: PymunkBlocks, most_steps: int, reach: float) -> tuple[FloatArray, bool]:
     """Advance until nothing moves, a block has moved by `reach` length scales, or the steps are over.
 
     Returns:
@@ -120,11 +107,11 @@ def _come_to_rest(
     unit, units = space.assembly.length_scale, motion_units(space.assembly)
     start = before = space.places()
     deadline = Deadline.of_run()
-    for _ in range(max(1, most_steps // options.look)):
+    for _ in range(max(1, most_steps // _LOOK)):
         deadline.ask()
-        space.advance(options.look)
+        space.advance(_LOOK)
         now = space.places()
-        if float(np.abs((now - before) / units).max()) < options.still and space.speed() < options.slow:
+        if float(np.abs((now - before) / units).max()) < _STILL and space.speed() < _SLOW:
             return now, True
         before = now
         if float(np.abs(now - start)[:, :2].max()) >= reach * unit:
@@ -159,7 +146,6 @@ def load_uneven(
     accuracy: float = 0.005,
     reach: float = REACH,
     most_steps: int = 20_000,
-    options: SettlingTuning = SettlingTuning(),
 ) -> Loading:
     """Raise the live load on a wall of uneven blocks, at large displacements, until it no longer comes to rest.
 
@@ -174,12 +160,11 @@ def load_uneven(
         reach: a block that has moved this many length scales in one load step has fallen; and one that moved so far
             while the wall settled, if it did not come to rest.
         most_steps: most time steps of a load step.
-        options: how it comes to rest.
     """
     outlines = uneven_blocks(assembly, size, faces, seed)
-    space = PymunkBlocks(assembly, outlines, options.damping)
+    space = PymunkBlocks(assembly, outlines, _DAMPING)
     # Gaps that close add up over the courses to more than `reach`, so the settling has none.
-    rest, at_rest = _come_to_rest(space, most_steps, np.inf, options)
+    rest, at_rest = _come_to_rest(space, most_steps, np.inf)
     if not at_rest:
         falls = by_travel(assembly, assembly.dead, rest, reach) is not None
         return Loading(None, 0.0 if falls else None, 0.0, not falls)
@@ -189,10 +174,10 @@ def load_uneven(
     def rests(trial: float) -> bool:
         nonlocal space, rest, fallen
         if fallen:
-            space = PymunkBlocks(assembly, outlines, options.damping)
+            space = PymunkBlocks(assembly, outlines, _DAMPING)
             space.put(rest)
         space.load(trial)
-        places, at_rest = _come_to_rest(space, most_steps, reach, options)
+        places, at_rest = _come_to_rest(space, most_steps, reach)
         load = assembly.dead + trial * assembly.live
         if at_rest:
             rest = places
@@ -207,9 +192,7 @@ def load_uneven(
     return Loading(stood, fell, drift, fell != ends[1])
 
 
-def with_contacts(
-    assembly: Assembly, space: PymunkBlocks, places: FloatArray, options: SettlingTuning = SettlingTuning()
-) -> tuple[Assembly, int]:
+def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -> tuple[Assembly, int]:
     """The wall at these places (n, 3) with the contacts of the space, and how many of them are single points."""
     unit = assembly.length_scale
     friction = {
@@ -223,7 +206,7 @@ def with_contacts(
         if assembly.fixed[a] and assembly.fixed[b]:
             continue
         tangent = np.array([-normal[1], normal[0]])
-        if len(points) == 2 and np.linalg.norm(points[1] - points[0]) > options.segment * unit:
+        if len(points) == 2 and np.linalg.norm(points[1] - points[0]) > _SEGMENT * unit:
             one, two = points
             along = (two - one) / np.linalg.norm(two - one)
             across = np.array([along[1], -along[0]])
@@ -231,8 +214,8 @@ def with_contacts(
         else:
             single += 1
             one, two = (
-                points[0] - tangent * options.point * unit / 2.0,
-                points[0] + tangent * options.point * unit / 2.0,
+                points[0] - tangent * POINT * unit / 2.0,
+                points[0] + tangent * POINT * unit / 2.0,
             )
         rows.append((a, b, one, two, normal, friction.get((a, b), least)))
     one, two = np.array([row[2] for row in rows]), np.array([row[3] for row in rows])

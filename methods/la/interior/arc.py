@@ -21,31 +21,32 @@ from methods.la.interior.interior_point import PathResult, step_lengths
 from methods.la.interior.newton_step import Direction, NewtonStep, Point
 from methods.numerics.failures import NumericalFailure, SingularMatrix
 
+_SHORTEST = 2.0**-8
+"""Stride below which it is not halved again."""
+_FAR = 4.0
+"""Largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it."""
+_ASTRAY = 0.5
+"""Root mean square of the relative changes back to the path beyond which a step only leads back."""
+_PATIENCE = 8
+"""Steps back in turn after which the path is taken up again with a shorter stride."""
+_TO_BOUNDARY = 0.9
+"""Part of the way to the boundary that a step goes."""
+_GONE = 10.0
+"""Relative gap above which the path has turned away for good."""
+
 
 @dataclass(frozen=True)
 class Stepping:
     """How the path is followed.
 
     Attributes:
-        stride, shortest: largest relative change of a slack or rate that a step along the tangent aims at, and that
-            below which it is not halved again.
-        far: largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it.
-        astray: root mean square of the relative changes back to the path beyond which a step only leads back.
-        patience: steps back in turn after which the path is taken up again with a shorter stride.
-        to_boundary: part of the way to the boundary that a step goes.
-        gone: relative gap above which the path has turned away for good.
+        stride: largest relative change of a slack or rate that a step along the tangent aims at.
         trial, left: steps after which a path must have left its beginning, and the root mean square of the changes of
             the logarithms of slacks and rates that this asks for; many that have not are closed.
         residual: scaled equilibrium and compatibility residuals at which a stretch of the path may stop.
     """
 
     stride: float = 4.0
-    shortest: float = 2.0**-8
-    far: float = 4.0
-    astray: float = 0.5
-    patience: int = 8
-    to_boundary: float = 0.9
-    gone: float = 10.0
     trial: int = 200
     left: float = 0.3
     residual: float = 1e-3
@@ -124,11 +125,7 @@ class ArcPath:
             statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
             converged = present <= gap and max(statics, kinematics) <= self._stepping.residual
             result = PathResult(point, converged, iteration, present, statics, kinematics, history)
-            if (
-                converged
-                or present > self._stepping.gone
-                or (self._steps == self._stepping.trial and not self._has_left())
-            ):
+            if converged or present > _GONE or (self._steps == self._stepping.trial and not self._has_left()):
                 break
             try:
                 self._go_on(step)
@@ -149,7 +146,7 @@ class ArcPath:
             way = self._way(step)
         if not (way.on_path or self._again):
             self._astray += 1
-            if self._astray <= self._stepping.patience or not self._take_up_again():
+            if self._astray <= _PATIENCE or not self._take_up_again():
                 self._advance(step, way, 0.0)
             return
         if not self._again and self._astray <= 1:
@@ -171,7 +168,7 @@ class ArcPath:
 
     def _take_up_again(self) -> bool:
         """Return to the last good point with half the stride, if there is one and the stride can be halved."""
-        if self._good is None or self._stride <= self._stepping.shortest:
+        if self._good is None or self._stride <= _SHORTEST:
             return False
         self._here, self._stride = self._good, 0.5 * self._stride
         self._astray, self._again = 0, True
@@ -179,7 +176,7 @@ class ArcPath:
 
     def _advance(self, step: NewtonStep, way: _Way, stride: float) -> None:
         change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
-        length = min(step_lengths(self._here.point, change, self._tight, self._stepping.to_boundary, 0.0))
+        length = min(step_lengths(self._here.point, change, self._tight, _TO_BOUNDARY, 0.0))
         self._here = _Place(step.advance(change, length, length), self._here.tau * float(np.exp(length * growth)))
 
     def _way(self, step: NewtonStep) -> _Way:
@@ -192,7 +189,7 @@ class ArcPath:
         growth = -float((along * across).mean()) / (square + 1.0)
         astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
         product = np.where(self._tight, target, point.slack * point.rates)
-        on_path = astray <= self._stepping.astray and float(abs(np.log(product / target)).max()) <= self._stepping.far
+        on_path = astray <= _ASTRAY and float(abs(np.log(product / target)).max()) <= _FAR
         return _Way(back, tangent, growth, float(abs(along).max()), on_path)
 
 

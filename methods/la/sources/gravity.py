@@ -19,17 +19,11 @@ class Springs:
     """How paths of springs are followed.
 
     Attributes:
-        certificate: residual of a mechanism at which a path ends.
-        most_breakpoints: changes of state per gap point after which one is given up.
         ratios: kt / kn of further paths from the same kind of forces, in turn; the first is that of `fe`, whose falls
             under the dead load are named beside the answer.
-        right: sine of the angle by which right-angled joints may be off.
     """
 
-    certificate: float = 1e-12
-    most_breakpoints: int = 5
     ratios: tuple[float, ...] = (GapSettings().stiffness_ratio, 5.0, 50.0)
-    right: float = 1e-6
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,13 @@ from methods.springs.path.path_record import PathEnd, PathRecord
 from methods.springs.path.plateau import finish
 from methods.springs.rest.equilibrium import doubled, first_step
 
+_CERTIFICATE = 1e-12
+"""Residual of a mechanism at which a path ends."""
+_MOST_BREAKPOINTS = 5
+"""Changes of state per gap point after which one is given up."""
+_RIGHT = 1e-6
+"""Sine of the angle by which right-angled joints may be off."""
+
 
 @dataclass(frozen=True)
 class PathStart:
@@ -123,7 +130,7 @@ class LowPrestress:
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends, until the breakpoints are spent."""
         problem, known = search.problem, search.record.least
-        right_angled = _right_angled(problem, search.choices.springs.right)
+        right_angled = _right_angled(problem, _RIGHT)
         if right_angled and problem.n_interfaces > self.gravity_alone and search.record.led_to_state(ArcPaths.name):
             return
         small = problem.n_interfaces <= self.vertices_up_to
@@ -276,7 +283,7 @@ def _from_gravity(search: Search, gravity: Gravity, scale: float, interval: floa
     if interval == np.inf:
         for further in doubled(model, factor, first):
             first = further
-    follower = PathFollower.from_rest(model, factor, first, search.choices.springs.certificate)
+    follower = PathFollower.from_rest(model, factor, first, _CERTIFICATE)
     return PathStart(follower, model.options.jumps, interval)
 
 
@@ -302,13 +309,13 @@ def _from_forces(search: Search, forces: FloatArray, multiplier: float, ratio: f
     problem = search.problem
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
-    return PathStart(PathFollower.from_forces(model, make_factor(model), *start, search.choices.springs.certificate))
+    return PathStart(PathFollower.from_forces(model, make_factor(model), *start, _CERTIFICATE))
 
 
 def _collapse_state(search: Search, path_start: PathStart) -> CollapseState | None:
     """The collapse state at the end of a path; None also below a multiplier of zero."""
     problem, record, model = search.problem, PathRecord(), path_start.follower.model
-    most = search.choices.springs.most_breakpoints * model.n_points
+    most = _MOST_BREAKPOINTS * model.n_points
     try:
         way = follow(path_start.follower, record, most, path_start.interval, jumps=path_start.jumps)
     finally:
