@@ -38,7 +38,7 @@ def _stands(inside: bool) -> str:
     return "stands" if inside else "falls"
 
 
-def stacks() -> Iterator[Recipe]:
+def _stacks() -> Iterator[Recipe]:
     """Stacks with counterweights just inside and outside their limit; a diamond that stands and one that does not."""
     best = (15.0 - 4.0 * math.sqrt(2.0)) / 8.0
     four = ((0.021446604750187,), (-0.646768184887956, best - 0.5), (-0.042571638624519,))
@@ -105,7 +105,7 @@ def _of_stack(name: str, content: Wall, word: str, source: str, summary: str) ->
     return recipe(name, content, references, Remarks(_OVERHANG, summary, _STABILITY, kind="stability"))
 
 
-def slopes() -> Iterator[Recipe]:
+def _slopes() -> Iterator[Recipe]:
     """A block on a plane in each of its four regimes: it stands, slides, topples, or does both."""
     rules = (
         ("stands", 10.0, 40.0, 42.0, "tan alpha < mu and tan alpha < b / h"),
@@ -141,7 +141,7 @@ def _turned(polygon: Sequence[tuple[float, float]], degrees: float) -> list[tupl
     return [(round(x * cosine - y * sine, 12), round(x * sine + y * cosine, 12)) for x, y in polygon]
 
 
-def thrusts() -> Iterator[Recipe]:
+def _thrusts() -> Iterator[Recipe]:
     """The least and the greatest thrust of a semicircle, by a springer on a smooth plane that a dead force holds."""
     count, inner, outer, held = 20, 0.9, 1.1, 0.2
     values = {"least": 0.1542448387, "greatest": 0.2553105847}
@@ -199,7 +199,7 @@ def thrusts() -> Iterator[Recipe]:
         yield recipe(f"arch-thrust-{name}", content, references, Remarks(source, summary, ("closed-form",)))
 
 
-def columns_on_a_slope() -> Iterator[Recipe]:
+def _columns_on_a_slope() -> Iterator[Recipe]:
     """Sixteen columns on a stepped slope of 60 degrees, of Goodman and Bray's limit equilibrium."""
     source = "R. E. Goodman and J. W. Bray, Toppling of rock slopes, ASCE 1976: their recursion, computed for this wall"
     content = wall(
@@ -255,5 +255,5 @@ def _columns() -> list[dict[str, object]]:
 
 def recipes() -> Iterator[Recipe]:
     """Every wall of this module."""
-    for family in (stacks, slopes, thrusts, columns_on_a_slope):
+    for family in (_stacks, _slopes, _thrusts, _columns_on_a_slope):
         yield from family()

@@ -33,7 +33,7 @@ def _values(found: dict[str, float], source: str, requirement: dict[str, str]) -
     ]
 
 
-def blocks() -> Iterator[Recipe]:
+def _blocks() -> Iterator[Recipe]:
     """One block: it bears its plastic multiplier, breaks there, and is left with the residual one."""
     for block in BLOCKS:
         peak, formula = block.peak, block.formula
@@ -58,7 +58,7 @@ def _box(name: str, left: float, bottom: float, right: float, top: float, **more
     return {"id": name, "polygon": [(left, bottom), (right, bottom), (right, top), (left, top)], **more}
 
 
-def side_by_side() -> Iterator[Recipe]:
+def _side_by_side() -> Iterator[Recipe]:
     """A block on two joints of one length, a smooth brittle one and a rough plain one, pushed along both."""
     force, at, bond, tension = 10.0, 0.9, 7.0, 5.0
     content = wall(
@@ -106,7 +106,7 @@ def side_by_side() -> Iterator[Recipe]:
     )
 
 
-def bonded_wall() -> Iterator[Recipe]:
+def _bonded_wall() -> Iterator[Recipe]:
     """The 21-brick wall with strong brittle joints."""
     content = wall(
         "The 21-brick wall with strong brittle joints",
@@ -151,5 +151,5 @@ def bonded_wall() -> Iterator[Recipe]:
 
 def recipes() -> Iterator[Recipe]:
     """Every case with brittle joints."""
-    for family in (blocks, side_by_side, bonded_wall):
+    for family in (_blocks, _side_by_side, _bonded_wall):
         yield from family()

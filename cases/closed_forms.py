@@ -18,7 +18,7 @@ _MILANKOVITCH = (
 SUITES = ("closed-form",)
 
 
-def blocks() -> Iterator[Recipe]:
+def _blocks() -> Iterator[Recipe]:
     """One block and stacks of them on level ground: min(friction, width / height)."""
     for name, width, height, count, friction in (
         ("slide", 0.4, 0.2, 1, 0.3),
@@ -49,7 +49,7 @@ def blocks() -> Iterator[Recipe]:
         )
 
 
-def inclines() -> Iterator[Recipe]:
+def _inclines() -> Iterator[Recipe]:
     """A block on an incline pushed horizontally down or up it: tan(phi -+ alpha)."""
     friction, slope, length, height = 0.5, 10.0, 1.0, 0.2
     cosine, sine = math.cos(math.radians(slope)), math.sin(math.radians(slope))
@@ -147,7 +147,7 @@ def _two_frictions() -> Iterator[Recipe]:
     yield recipe("two-frictions", content, references, Remarks(STATICS, summary, (*SUITES, "small")))
 
 
-def overhangs() -> Iterator[Recipe]:
+def _overhangs() -> Iterator[Recipe]:
     """Harmonic stacks of eight blocks just inside and just outside the limit of overhang."""
     count = 8
     limit = 0.5 * sum(1.0 / k for k in range(1, count + 1))
@@ -175,7 +175,7 @@ def overhangs() -> Iterator[Recipe]:
         yield recipe(f"overhang-{count}-{word}", content, r.finding(word, source, sentence), remarks)
 
 
-def columns() -> Iterator[Recipe]:
+def _columns() -> Iterator[Recipe]:
     """A column of four blocks: under an eccentric dead force on top, and pushed by a force at a height."""
     width, height, count, unit = 0.4, 0.25, 4, 20.0
     block = unit * width * height
@@ -290,7 +290,7 @@ def _thin_arches() -> Iterator[Recipe]:
             yield recipe(f"heyman-arch-{count}-{word}", content, r.finding(word, source, sentence), remarks)
 
 
-def running_bonds() -> Iterator[Recipe]:
+def _running_bonds() -> Iterator[Recipe]:
     """The 21-brick wall where it slides on the ground as one, and a slender wall that overturns as one."""
     friction = 0.2
     content = wall(
@@ -337,5 +337,5 @@ def running_bonds() -> Iterator[Recipe]:
 
 def recipes() -> Iterator[Recipe]:
     """Every closed form."""
-    for family in (blocks, inclines, _two_frictions, overhangs, columns, _thin_arches, running_bonds):
+    for family in (_blocks, _inclines, _two_frictions, _overhangs, _columns, _thin_arches, _running_bonds):
         yield from family()

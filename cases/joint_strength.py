@@ -75,7 +75,7 @@ def _bonded_blocks() -> Iterator[Recipe]:
         yield recipe(f"bonded-block-{does}", block.wall(f"joint with {strength}"), references, remarks)
 
 
-def bonded_wall() -> Iterator[Recipe]:
+def _bonded_wall() -> Iterator[Recipe]:
     """The 21-brick wall with a cohesion of a twentieth of unit weight times brick length in all joints."""
     content = wall(
         "The 21-brick wall with a little cohesion in all joints",
@@ -296,5 +296,5 @@ def _without_dilatancy() -> list[Reference]:
 
 def recipes() -> Iterator[Recipe]:
     """Every case of joints with strength."""
-    for family in (_bonded_blocks, _couplet, bonded_wall, _dilatant_wall, _crushing_piers, _crushing_walls):
+    for family in (_bonded_blocks, _couplet, _bonded_wall, _dilatant_wall, _crushing_piers, _crushing_walls):
         yield from family()

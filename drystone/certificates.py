@@ -39,7 +39,7 @@ ROUNDING = 1e-9
 """Relative amount by which the multiplier found, in floats, may lie below what is proved in fractions."""
 
 
-def certificate_of(case: Case) -> Path | None:
+def _certificate_of(case: Case) -> Path | None:
     """The certificate beside the wall of a case, if there is one."""
     folder = Path(case.origin).parent
     return _certificate_in(folder) if (folder / "case.toml").is_file() else None
@@ -64,9 +64,9 @@ def _library() -> dict[str, tuple[Path, ...]]:
 def certificates_for(case: Case) -> list[Path]:
     """The certificates that may be of the wall of a case: the one beside it, else those of equal walls of the library.
 
-    Whether one of the library is of this wall is decided by `checked`: equal content is only how it is found.
+    Whether one of the library is of this wall is decided by `_checked_case`: equal content is only how it is found.
     """
-    beside = certificate_of(case)
+    beside = _certificate_of(case)
     if beside is not None:
         return [beside]
     try:
@@ -107,7 +107,7 @@ def proved(document: Any) -> str:
     return f"{least}, and one at {in_words(number(document['multiplier']))}, proved in fractions"
 
 
-def checked(case: Case, path: Path) -> Certified:
+def _checked_case(case: Case, path: Path) -> Certified:
     """What the certificate of a case proves, checked in fractions and against the wall.
 
     Raises:
@@ -115,7 +115,7 @@ def checked(case: Case, path: Path) -> Certified:
         InputError: unreadable.
     """
     document, assembly, source = read_certificate(path), case.assembly, path.name
-    if path != certificate_of(case):
+    if path != _certificate_of(case):
         assembly, source = _named_as(document, assembly), f"{path.parent.name}/{path.name}"
     return _checked(document, assembly, source)
 
@@ -160,7 +160,7 @@ def _named_as(document: Any, assembly: Assembly) -> Assembly:
 
 def certificate_runs(cases: Sequence[Case], limits: Limits) -> list[Run]:
     """The runs whose multipliers the certificates of the cases are held to."""
-    return [Run(case, library().methods.one, {}, limits) for case in cases if certificate_of(case) is not None]
+    return [Run(case, library().methods.one, {}, limits) for case in cases if _certificate_of(case) is not None]
 
 
 def certificate_line(run: Run, result: Result) -> dict[str, Any]:
@@ -171,11 +171,11 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
         result: of the run.
     """
     assert isinstance(run.case, Case)
-    path = certificate_of(run.case)
+    path = _certificate_of(run.case)
     assert path is not None
     lower: float | None = None
     try:
-        certified = checked(run.case, path)
+        certified = _checked_case(run.case, path)
         lower = certified.bound
         verdict, sentence = _held(result, certified)
     except (CertificateError, InputError) as error:
@@ -225,9 +225,9 @@ def _with_certificate(item: CaseResults, seconds: float) -> CaseResults:
     certified = None
     for path in certificates_for(item.case):
         try:
-            certified = checked(item.case, path)
+            certified = _checked_case(item.case, path)
         except (CertificateError, InputError) as error:
-            if path != certificate_of(item.case):
+            if path != _certificate_of(item.case):
                 continue  # of a wall of the library that is not quite this one
             gate = Gate(
                 name="certificate", statement=statement, passed=False, sentence=f"{path.name} is refused: {error}"

@@ -38,7 +38,7 @@ JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
 
 
-def escape(text: str) -> str:
+def _escape(text: str) -> str:
     """Text of any origin for a table or a line: control characters made visible, brackets no markup."""
     from rich.markup import escape as literal
 
@@ -68,7 +68,7 @@ def progress_bar(total: int, *, quiet: bool = False) -> Iterator[Progress]:
         task = bar.add_task("running", total=total)
 
         def advance(run: Run, result: Result, stored: bool) -> None:
-            bar.update(task, advance=1, description=escape(f"{run.case.id} {run.method}"))
+            bar.update(task, advance=1, description=_escape(f"{run.case.id} {run.method}"))
 
         yield advance
 
@@ -81,15 +81,15 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     console = Console()
     if not console.is_terminal:
         console = Console(width=140)
-    table = Table(title=f"Drystone: {escape(compared.title)}", title_justify="left", caption_justify="left")
+    table = Table(title=f"Drystone: {_escape(compared.title)}", title_justify="left", caption_justify="left")
     for column in columns:
         whole = column.name in ("multiplier", "method")
-        table.add_column(escape(column.head), justify="right" if column.numeric else "left", no_wrap=whole)
+        table.add_column(_escape(column.head), justify="right" if column.numeric else "left", no_wrap=whole)
     for case in compared.cases:
         for number, result in enumerate(case.results):
             row = ResultRow(result, proof_of(case, result))
             table.add_row(
-                *["" if number and column.name == "case" else escape(column.text(row)) for column in columns],
+                *["" if number and column.name == "case" else _escape(column.text(row)) for column in columns],
                 end_section=number == len(case.results) - 1,
             )
     console.print(table)
@@ -105,7 +105,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     split = _by_sentence((f": {case.split_on_dead_load}.", case) for case in compared.cases if case.split_on_dead_load)
     strength = [sentence for case in compared.cases for sentence in _strength(case)]
     for sentence in (*_proofs(compared), *refusals, *told, *unanswered, *split, *strength):
-        console.print(escape(sentence), highlight=False)
+        console.print(_escape(sentence), highlight=False)
     _print_envelopes(envelopes(compared.cases))
     broken = violations(compared)
     gated = sum(item.gate for case in compared.cases for result in case.results for item in result.comparisons)
@@ -115,7 +115,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
         held = ", ".join(f"{count(number, noun)}{of}" for number, noun, of in known if number)
         console.print(f"Not met, of {held}{' and ' if held else ''}the answers: {len(broken)}")
         for sentence in broken:
-            console.print(f"  ✗ {escape(sentence)}", highlight=False)
+            console.print(f"  ✗ {_escape(sentence)}", highlight=False)
     else:
         console.print(_all_well(gated, gates))
     if report is not None:
@@ -382,9 +382,9 @@ def print_rows(rows: list[dict[str, Any]]) -> None:
     table = Table(box=None, pad_edge=False)
     if rows:
         for name in rows[0]:
-            table.add_column(escape(name))
+            table.add_column(_escape(name))
     for row in rows:
-        table.add_row(*[escape(_cell(value)) for value in row.values()])
+        table.add_row(*[_escape(_cell(value)) for value in row.values()])
     console.print(table, highlight=False)
 
 

@@ -50,7 +50,7 @@ _NOISE = 1e-4
 """Speed of a component, beside the fastest of the wall, up to which its measured motion is the noise of rest."""
 
 
-class NotOfThisWall(ValueError):
+class _NotOfThisWall(ValueError):
     """The forces of a motion are not three finite numbers an interface."""
 
 
@@ -68,7 +68,7 @@ def motion_faults(
     given = AnswerDetails(details).moving_forces
     try:
         forces = None if given is None else _forces(assembly, given)
-    except NotOfThisWall as error:
+    except _NotOfThisWall as error:
         return {}, str(error)
     if not mechanism.any():
         return {}, "Its measured motion moves no block."
@@ -84,7 +84,7 @@ def _forces(assembly: Assembly, given: Any) -> FloatArray:
     """The forces of a motion as an array (m, 3).
 
     Raises:
-        NotOfThisWall: they are no such array.
+        _NotOfThisWall: they are no such array.
     """
     count = assembly.n_interfaces
     try:
@@ -92,7 +92,7 @@ def _forces(assembly: Assembly, given: Any) -> FloatArray:
     except (TypeError, ValueError):
         forces = np.empty(0)
     if forces.shape != (count, 3) or not np.isfinite(forces).all():
-        raise NotOfThisWall(f"`{MOVING_FORCES}` are not {count} finite triples.")
+        raise _NotOfThisWall(f"`{MOVING_FORCES}` are not {count} finite triples.")
     return forces
 
 

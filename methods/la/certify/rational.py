@@ -17,7 +17,7 @@ from methods.la.core.state import CollapseState, tight_contacts
 from methods.proof.tree.sparse_fractions import DENOMINATOR, Row, solve_sparse
 
 
-class NotShortError(ValueError):
+class _NotShortError(ValueError):
     """A number of the wall is not a short fraction."""
 
 
@@ -25,11 +25,11 @@ def _short_fraction(value: float) -> Fraction:
     """The fraction of denominator up to 10^6 that a float stands for.
 
     Raises:
-        NotShortError: there is none within rounding.
+        _NotShortError: there is none within rounding.
     """
     fraction = Fraction(value).limit_denominator(DENOMINATOR)
     if abs(float(fraction) - value) > 1e-13 * max(1.0, abs(value)):
-        raise NotShortError(f"{value!r} is not a short fraction")
+        raise _NotShortError(f"{value!r} is not a short fraction")
     return fraction
 
 
@@ -38,7 +38,7 @@ def confirm(problem: Problem, state: CollapseState) -> dict[str, Any]:
     try:
         forces, multiplier, columns = _solve_statics(problem, state)
         moving_ok, works = _check_mechanism(problem, state, columns)
-    except (NotShortError, ArithmeticError) as error:
+    except (_NotShortError, ArithmeticError) as error:
         return {"confirmed": False, "reason": str(error)}
     friction = [_short_fraction(mu) for mu in problem.assembly.friction.tolist()]
     held = True

@@ -93,7 +93,7 @@ def solve_associated(
     statics, mechanism = found.statics, found.kinematics
     moving = moving_contacts(mechanism.rates)
     state = CollapseState(statics.forces, statics.multiplier, mechanism.velocities, moving, associated=True)
-    return AssociatedResult("optimal", state, duality_gap(problem, state), statics.iterations)
+    return AssociatedResult("optimal", state, _duality_gap(problem, state), statics.iterations)
 
 
 def _bears_live_load_alone(problem: Problem) -> bool:
@@ -115,10 +115,10 @@ def with_mechanism(
         return AssociatedResult("unknown", iterations=iterations)
     state = CollapseState(forces, multiplier, mechanism.velocities, moving_contacts(mechanism.rates), associated=True)
     state = polished(problem, newton, state)
-    return AssociatedResult("optimal", state, duality_gap(problem, state), iterations)
+    return AssociatedResult("optimal", state, _duality_gap(problem, state), iterations)
 
 
-def duality_gap(problem: Problem, state: CollapseState) -> float:
+def _duality_gap(problem: Problem, state: CollapseState) -> float:
     """Distance of the static multiplier from the kinematic one of the same state, relative to max(1, |multiplier|)."""
     rates = problem.rates_of_velocities(state.velocities, associated=True)
     spent = problem.law.dissipation(rates) - float(problem.dead @ state.velocities)
@@ -143,7 +143,7 @@ def _by_interior_point(problem: Problem, newton: NewtonMatrix, end: EndOfPath) -
         clear = None if state is None else _at_rest_elsewhere(problem, newton, state)
         for found in (clear, state):
             if found is not None and _unclear(problem, found) <= end.exact:
-                return AssociatedResult("optimal", found, duality_gap(problem, found), result.iterations)
+                return AssociatedResult("optimal", found, _duality_gap(problem, found), result.iterations)
     return None
 
 

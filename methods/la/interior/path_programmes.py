@@ -60,7 +60,7 @@ def cheapest_mechanism(
     return follow_path(programme, newton, start_point(programme), PathSettings.sharp())
 
 
-def least_multiplier(problem: Problem, newton: NewtonMatrix, moving: BoolArray, settings: PathSettings) -> PathResult:
+def _least_multiplier(problem: Problem, newton: NewtonMatrix, moving: BoolArray, settings: PathSettings) -> PathResult:
     """The forces of least multiplier with the slacks of the moving contacts (m, 4) at zero, as a path's end.
 
     The path belongs to the reversed live load: its multiplier has the opposite sign.
@@ -81,7 +81,7 @@ def state_of_mechanism(
 
     One at a negative multiplier is none: the wall would not bear its dead load alone.
     """
-    result = least_multiplier(problem, newton, moving, exactness.linear)
+    result = _least_multiplier(problem, newton, moving, exactness.linear)
     point = result.point
     best: CollapseState | None = None
     merit = float("inf")

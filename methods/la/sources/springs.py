@@ -134,7 +134,7 @@ class LowPrestress:
         if right_angled and problem.n_interfaces > self.gravity_alone and search.record.led_to_state(ArcPaths.name):
             return
         small = problem.n_interfaces <= self.vertices_up_to
-        for k, state in ends(search, self._starts(search)):
+        for k, state in _ends(search, self._starts(search)):
             yield state
             if k == 0 and right_angled and (small or state.multiplier > known + LEAST_IMPROVEMENT):
                 return
@@ -194,7 +194,7 @@ class ShiftedAssociated:
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state at most; none where statics allows any load."""
         if not (search.record.known or search.associated.outcome == "unbounded"):
-            yield from (state for _, state in ends(search, iter([partial(self._start, search)])))
+            yield from (state for _, state in _ends(search, iter([partial(self._start, search)])))
 
     def _start(self, search: Search) -> PathStart | None:
         """From the wall with smooth unloaded joints, if it has any."""
@@ -232,7 +232,7 @@ class AnalyticCentre:
         """
         known = search.record.led_to_state_but(RestoredFriction.name)
         if not (known or search.associated.outcome == "unbounded"):
-            yield from (state for _, state in ends(search, self._starts(search)))
+            yield from (state for _, state in _ends(search, self._starts(search)))
 
     def _starts(self, search: Search) -> Iterator[Start]:
         first, *others = search.choices.springs.ratios
@@ -245,7 +245,7 @@ class AnalyticCentre:
             yield partial(_from_central_forces, search, ratio)
 
 
-def ends(search: Search, starts: Iterator[Start]) -> Iterator[tuple[int, CollapseState]]:
+def _ends(search: Search, starts: Iterator[Start]) -> Iterator[tuple[int, CollapseState]]:
     """The number of each start whose path ends in a collapse state, and the state, while there are breakpoints left."""
     for k, start in enumerate(starts):
         if not search.budget.breakpoints_left(search.record.known):
