@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import cases.recipe as r
 from cases.joint_strength import BLOCKS
@@ -54,10 +53,6 @@ def _blocks() -> Iterator[Recipe]:
         )
 
 
-def _box(name: str, left: float, bottom: float, right: float, top: float, **more: Any) -> dict[str, Any]:
-    return {"id": name, "polygon": [(left, bottom), (right, bottom), (right, top), (left, top)], **more}
-
-
 def _side_by_side() -> Iterator[Recipe]:
     """A block on two joints of one length, a smooth brittle one and a rough plain one, pushed along both."""
     force, at, bond, tension = 10.0, 0.9, 7.0, 5.0
@@ -76,9 +71,9 @@ def _side_by_side() -> Iterator[Recipe]:
             ],
         },
         blocks=[
-            _box("left", -0.5, -1.0, 0.5, 0.0, fixed=True),
-            _box("right", 0.5, -1.0, 1.5, 0.0, fixed=True),
-            _box("block", 0.0, 0.0, 1.0, 0.5, weight=2.0),
+            r.box("left", -0.5, -1.0, 0.5, 0.0, fixed=True),
+            r.box("right", 0.5, -1.0, 1.5, 0.0, fixed=True),
+            r.box("block", 0.0, 0.0, 1.0, 0.5, weight=2.0),
         ],
         loads={
             "dead": {"points": [{"block": "block", "at": (1.0, 0.5), "force": (0.0, -8.0)}]},

@@ -36,18 +36,7 @@ def _pushed_block() -> Recipe:
     formula = "mu + m K_p gamma h^2 / (2 W)"
     shown = f"{STATICS}: lambda = {formula}"
     sentence = f"The block slides at {formula} = {value:g}, and the whole face bears the passive pressure."
-    closed = r.reference(
-        "closed-form",
-        "exact",
-        value,
-        EXACT,
-        shown,
-        sentence,
-        tolerance=r.ROUND_OFF,
-        tolerance_reason=r.ROUND_OFF_REASON,
-        gate=True,
-    )
-    references = [closed, r.of_de("closed-form-de", value, shown, sentence)]
+    references = [r.closed_form(value, shown, sentence, EXACT), r.of_de("closed-form-de", value, shown, sentence)]
     summary = f"Pushed by a multiple of its weight, it slides at {formula}; without the fill it would at mu."
     return recipe("passive-block", content, references, Remarks(STATICS, summary, ("ties",), methods=METHODS))
 

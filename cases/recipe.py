@@ -64,6 +64,28 @@ def reference(
     )
 
 
+def box(name: str, left: float, bottom: float, right: float, top: float, **more: Any) -> dict[str, Any]:
+    """A rectangular block; `more` holds its other fields."""
+    return {"id": name, "polygon": [(left, bottom), (right, bottom), (right, top), (left, top)], **more}
+
+
+def closed_form(
+    value: float, source: str, requirement: str, methods: Sequence[str] = _STATIC, scale: float = 1.0
+) -> Reference:
+    """The exact multiplier for methods of statics, to round-off relative to `scale`, the size of the multiplier."""
+    return reference(
+        "closed-form",
+        "exact",
+        value,
+        methods,
+        source,
+        requirement,
+        tolerance=ROUND_OFF * scale,
+        tolerance_reason=ROUND_OFF_REASON,
+        gate=True,
+    )
+
+
 def exact(
     value: float, source: str, requirement: str, *, relative_de: float = 0.001, scale: float = 1.0
 ) -> list[Reference]:
@@ -74,17 +96,7 @@ def exact(
     reason = f"damped load steps end within {100 * relative_de:g} % here"
     value = round(value, 14)
     return [
-        reference(
-            "closed-form",
-            "exact",
-            value,
-            _STATIC,
-            source,
-            requirement,
-            tolerance=ROUND_OFF * scale,
-            tolerance_reason=ROUND_OFF_REASON,
-            gate=True,
-        ),
+        closed_form(value, source, requirement, scale=scale),
         of_de("closed-form-de", value, source, requirement, relative_de, reason),
     ]
 

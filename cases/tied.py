@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import cases.recipe as r
 from cases.recipe import STATICS, Recipe, Remarks, push, recipe, wall
@@ -16,10 +15,6 @@ THRUST = (
     "J. Heyman, The stone skeleton, International Journal of Solids and Structures 2 (1966) 249-279: an arch spreads "
     "at its least thrust"
 )
-
-
-def _box(name: str, left: float, bottom: float, right: float, top: float, **more: Any) -> dict[str, Any]:
-    return {"id": name, "polygon": [(left, bottom), (right, bottom), (right, top), (left, top)], **more}
 
 
 def _held_blocks() -> Iterator[Recipe]:
@@ -37,9 +32,9 @@ def _held_blocks() -> Iterator[Recipe]:
             f"A block {width} x {height} m held near its top by a {kind}",
             friction=0.7,
             blocks=[
-                _box("ground", 0.0, -0.4, width, 0.0, fixed=True),
-                _box("block", 0.0, 0.0, width, height, weight=weight),
-                _box("wall", left, 0.0, right, height, fixed=True),
+                r.box("ground", 0.0, -0.4, width, 0.0, fixed=True),
+                r.box("block", 0.0, 0.0, width, height, weight=weight),
+                r.box("wall", left, 0.0, right, height, fixed=True),
             ],
             loads=push(),
             **{f"{kind}s": [bar]},
@@ -48,17 +43,7 @@ def _held_blocks() -> Iterator[Recipe]:
         shown = f"{STATICS}: moments about the edge, lambda = {formula}"
         sentence = f"The block topples at {formula} = {value:g}, and the {kind} yields."
         references = [
-            r.reference(
-                "closed-form",
-                "exact",
-                value,
-                EXACT,
-                shown,
-                sentence,
-                tolerance=r.ROUND_OFF,
-                tolerance_reason=r.ROUND_OFF_REASON,
-                gate=True,
-            ),
+            r.closed_form(value, shown, sentence, EXACT),
             r.of_de("closed-form-de", value, shown, sentence),
         ]
         summary = f"Pushed by a multiple of its weight, it topples at {formula}; alone it would at b / h = 0.2."
@@ -88,8 +73,8 @@ def _tied_arches() -> Iterator[Recipe]:
             friction={"default": 1.5, "rules": rollers},
             blocks=[
                 *voussoirs,
-                _box("left", -outer, -0.2, -inner, 0.0, fixed=True),
-                _box("right", inner, -0.2, outer, 0.0, fixed=True),
+                r.box("left", -outer, -0.2, -inner, 0.0, fixed=True),
+                r.box("right", inner, -0.2, outer, 0.0, fixed=True),
             ],
             ties=[
                 {
