@@ -202,7 +202,7 @@ def _held(result: Result, certified: Certified) -> tuple[Verdict, str]:
     if not result.finding.has_multiplier or result.multiplier is None:
         return Verdict.OUTSIDE_TOLERANCE, f"{certified.sentence}, and {result.method} gives no multiplier"
     found = f"{result.method} finds {result.multiplier:.9g}"
-    if _below(result, certified):
+    if is_below(result, certified):
         return Verdict.VIOLATES_BOUND, f"{certified.sentence}, and {found}"
     return Verdict.AGREES, f"{certified.sentence}; {found}"
 
@@ -241,7 +241,7 @@ def _with_certificate(item: CaseResults, seconds: float) -> CaseResults:
     certified = max(known, key=lambda each: each.bound)
     judged = [each for each in item.results if each.traits.seeks_least and each.judge.accepted]
     found = [each for each in judged if each.multiplier is not None]
-    low = [each for each in found if _below(each, certified)]
+    low = [each for each in found if is_below(each, certified)]
     states = ", ".join(f"{each.method} {each.multiplier:.9g}" for each in low or found) or "no method has a state"
     gate = Gate(
         name="certificate",
@@ -265,7 +265,7 @@ def certified_results(case: Case, result: Result, seconds: float = 60.0) -> Case
     return _with_certificate(item, seconds) if asked else item
 
 
-def _below(result: Result, certified: Certified) -> bool:
+def is_below(result: Result, certified: Certified) -> bool:
     """Whether a multiplier is one that the certificate excludes; windows say nothing of those below zero."""
     value, bound = result.multiplier, certified.bound
     excluded = value is not None and value < bound - ROUNDING * abs(bound)

@@ -258,7 +258,7 @@ def factor_by(
             wall.case.origin,
         )
     alone = partial(judge, alone=True)
-    search = _Search(lambda at: runs.result(ReducedWall(wall.case, at, share), method, settings, alone))
+    search = FactorSearch(lambda at: runs.result(ReducedWall(wall.case, at, share), method, settings, alone))
     search.bracket(furthest)
     search.bisect(accuracy)
     return FactorOfSafety(
@@ -275,7 +275,7 @@ def factor_by(
 
 
 @dataclass
-class _Search:
+class FactorSearch:
     """The search for the factor at which a wall begins to fall.
 
     Attributes:

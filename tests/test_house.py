@@ -22,6 +22,13 @@ def parsed() -> dict[str, ast.Module]:
     return {str(path.relative_to(ROOT)): ast.parse(path.read_text(encoding="utf-8")) for path in paths}
 
 
+@cache
+def of_tests() -> dict[str, ast.Module]:
+    """The tests and what they share, by their path from the root of the house."""
+    paths = sorted((ROOT / "tests").rglob("*.py"))
+    return {str(path.relative_to(ROOT)): ast.parse(path.read_text(encoding="utf-8")) for path in paths}
+
+
 def nodes(*rooms: str) -> Iterator[tuple[str, ast.AST]]:
     """Every node of the modules of some rooms, with the place of its module."""
     for place, module in parsed().items():
@@ -38,10 +45,11 @@ def test_no_two_packages_or_modules_import_each_other(room: str):
     assert sorted(arrow for found in breakers for arrow in found) == []
 
 
-def test_no_module_imports_a_private_name():
+def test_no_module_and_no_test_imports_a_private_name():
     private = [
         f"{place}: from {node.module} import {alias.name}"
-        for place, node in nodes()
+        for place, module in (parsed() | of_tests()).items()
+        for node in ast.walk(module)
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
         if (alias.name.startswith("_") and not alias.name.startswith("__"))

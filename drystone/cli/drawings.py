@@ -60,7 +60,7 @@ def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...], r
     built as it stands; the list and the table are printed all the same.
     """
     check_methods([method], "--method")
-    looked = _looked_at(case, folders)
+    looked = looked_at(case, folders)
     joints = looked.built.assembly.n_interfaces if looked.built is not None else None
     plateaus = _plateaus(looked, method, runs)
     advice = suggested(plateaus)
@@ -95,7 +95,7 @@ def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...], r
     sys.exit(INPUT_ERROR if looked.faults else 0)
 
 
-def _looked_at(case: str, folders: tuple[Path, ...], load_case: str | None = None) -> Inspection:
+def looked_at(case: str, folders: tuple[Path, ...], load_case: str | None = None) -> Inspection:
     """A case, a wall file or a drawing looked over, under one of its load cases or the first.
 
     Raises:
@@ -216,7 +216,7 @@ def show(
     from reports.figures.figures import show_window
     from reports.figures.wall_check_figure import draw_inspected, inspected_figure
 
-    looked = _looked_at(case, folders, load_case)
+    looked = looked_at(case, folders, load_case)
     for sentence in looked.sentences(advised(looked)):
         say(f"drystone: {sentence}", err=True)
     if window:

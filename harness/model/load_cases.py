@@ -67,7 +67,7 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
     for name, factors in wall.combinations.items():
         for suffix, chosen in _chosen(name, factors, members, alone, MOST_LOAD_CASES - len(found)):
             cases = {each: alone[each] for each in chosen}
-            added += sum(_count(case.own) for case in cases.values())
+            added += sum(loads_in(case.own) for case in cases.values())
             if added > _MOST_ADDED:
                 raise InputError(
                     f"it and those before it add up more than {_MOST_ADDED:,} forces and pressures",
@@ -88,7 +88,7 @@ def named_loads_of(case: Case) -> dict[str, NamedLoads]:
         return named_loads(case.wall)
 
 
-def _count(loads: Loads) -> int:
+def loads_in(loads: Loads) -> int:
     """Forces and pressures of a load case."""
     return sum(
         len(load.body) + len(load.points) + len(load.pressures) + len(load.fills)

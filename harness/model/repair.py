@@ -63,7 +63,7 @@ def repair(wall: Wall, snap: float) -> Repaired:
     Raises:
         InputError: a block would vanish, because one of its edges is no longer than `snap`.
     """
-    blocks, doubles = _once(blocks_of_wall(wall), snap)
+    blocks, doubles = without_doubles(blocks_of_wall(wall), snap)
     drawn = polygons_of(blocks)
     for block, polygon in zip(blocks, drawn, strict=True):
         shortest = float(np.linalg.norm(geometry.following(polygon) - polygon, axis=1).min())
@@ -75,7 +75,7 @@ def repair(wall: Wall, snap: float) -> Repaired:
             )
     owner = np.repeat(np.arange(len(drawn)), [len(polygon) for polygon in drawn])
     before = np.concatenate(drawn)
-    after = _met(before, snap)
+    after = met_points(before, snap)
     onto = _faces_met(before, after, owner, snap)
     moves = tuple(
         _Move(blocks[owner[k]].id, int(k - np.searchsorted(owner, owner[k])), _pair(before[k]), _pair(after[k]))
@@ -97,7 +97,7 @@ def _pair(point: FloatArray) -> tuple[float, float]:
     return float(point[0]), float(point[1])
 
 
-def _once(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str, str]]]:
+def without_doubles(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str, str]]]:
     """The blocks without those that repeat the outline of an earlier one, and the pairs of names."""
     shapes = geometry.shapes_of(polygons_of(blocks))
     i, j = shapely.STRtree(shapes).query(shapes, predicate="intersects")
@@ -109,7 +109,7 @@ def _once(blocks: list[Block], snap: float) -> tuple[list[Block], list[tuple[str
     return [block for k, block in enumerate(blocks) if k not in kept_of], doubles
 
 
-def _met(points: FloatArray, snap: float) -> FloatArray:
+def met_points(points: FloatArray, snap: float) -> FloatArray:
     """The points (k, 2), those near to each other at their mean unless one of them would move too far."""
     from scipy.spatial import cKDTree
 

@@ -146,7 +146,7 @@ class DeformableJoints(Solver):
             again = self._with_joints(assembly, settings, factor * stiffness, rounding)
             again.iterations += answer.iterations
             answer = _better(answer, again)
-        return with_proof(assembly, at_limit(assembly, _saying_soft(answer, settings)))
+        return with_proof(assembly, at_limit(assembly, saying_soft(answer, settings)))
 
     def _with_joints(self, assembly: Assembly, settings: SoftSettings, stiffness: float, round_by: float) -> Answer:
         """The answer with joints of one stiffness [force/length^2], corners rounded by so much where nothing is set."""
@@ -203,7 +203,7 @@ def _concluded(holds: Holds, joints: str, stood: float, fell: float | None, cap:
         )
         return Answer(Status.OK, Finding.UNBOUNDED, sentence, details={"cap": cap})
     if fell in holds.undecided:
-        fell = _fall_above(holds, fell, cap)
+        fell = fall_above(holds, fell, cap)
     if fell is None:
         sentence = f"came to rest at {stood:.6g} and neither came to rest nor fell above it, with {joints}"
         return Answer(Status.NOT_CONVERGED, Finding.NONE, sentence)
@@ -254,7 +254,7 @@ def _better(answer: Answer, again: Answer) -> Answer:
     return answer
 
 
-def _fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
+def fall_above(holds: Holds, multiplier: float, cap: float) -> float | None:
     """The lowest multiplier tried above an undecided one at which the wall falls; None up to the cap."""
     rise = SHARE * multiplier
     while multiplier + rise <= cap:
@@ -323,7 +323,7 @@ def _too_soft(answer: Answer, settings: SoftSettings) -> float:
     return min(settings.stiffest, 2.0 * share / settings.lean) if share > settings.lean else 1.0
 
 
-def _saying_soft(answer: Answer, settings: SoftSettings) -> Answer:
+def saying_soft(answer: Answer, settings: SoftSettings) -> Answer:
     """The answer, saying so where its joints took more of the multiplier than they may."""
     share = answer.details["lean"]
     soft = share is not None and abs(share) > settings.lean

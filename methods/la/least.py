@@ -88,7 +88,7 @@ def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer
     falling = search.gravity.falling if asked else []
     if not search.record.known:
         return _with_falling_blocks(_nothing_found(search), falling)
-    chosen = _chosen(search)
+    chosen = chosen_state(search)
     if chosen is None:
         return not_converged(f"{_NOT_EXACT}.", search.budget.spent.newton_steps)
     best, proof = chosen
@@ -102,7 +102,7 @@ def _found(search: Search, settings: SearchSettings, tolerance: float) -> Answer
     return _with_falling_blocks(replace(answer, path=search.record.path(problem.unit_multiplier)), falling)
 
 
-def _chosen(search: Search) -> tuple[CollapseState, TreeProof] | None:
+def chosen_state(search: Search) -> tuple[CollapseState, TreeProof] | None:
     """The least state, exact, and what a tree proves of it; None where none holds beside the lightest blocks."""
     problem, newton, states = search.problem, search.newton, search.record.states
     badly_scaled = row_scaling(problem)
@@ -113,7 +113,7 @@ def _chosen(search: Search) -> tuple[CollapseState, TreeProof] | None:
     best = least_of(problem, states)
     proof = prove(search, best, search.budget.limits.nodes)
     if badly_scaled is not None:
-        return _of_uneven(problem, newton, badly_scaled, [*states, best], proof)
+        return of_uneven(problem, newton, badly_scaled, [*states, best], proof)
     if proof.state is not best:
         best = search.descend(proof.state)
         proof = replace(proof, state=best)
@@ -198,7 +198,7 @@ def confirmed(
     return kept
 
 
-def _of_uneven(
+def of_uneven(
     problem: Problem, newton: NewtonMatrix, units: RowScaling, states: list[CollapseState], proof: TreeProof
 ) -> tuple[CollapseState, TreeProof]:
     """The least state that is confirmed, and what the tree proves of it: nothing where its own is not confirmed."""

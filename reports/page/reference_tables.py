@@ -27,7 +27,7 @@ class HeldRow:
     def cell(self, column: str | ComparisonColumn) -> Cell:
         """What the report prints of a column, which may be named."""
         found = next(item for item in COMPARISONS if item.name == column) if isinstance(column, str) else column
-        own = _HELD_CELLS.get(found.name)
+        own = HELD_CELLS.get(found.name)
         return plain_cell(found, self.row) if own is None else own(self.row)
 
     @property
@@ -97,7 +97,7 @@ def _tolerance_cell(row: ComparedRow) -> Cell:
 _COUNTS = ("blocks", "interfaces", "unknowns")
 
 
-_HELD_CELLS: dict[str, Callable[[ComparedRow], Cell]] = {
+HELD_CELLS: dict[str, Callable[[ComparedRow], Cell]] = {
     "quantity": _quantity_cell,
     "value": _value_cell,
     "expected": _expected_cell,

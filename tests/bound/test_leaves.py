@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from methods.proof.verify.cases import States, states_of
-from methods.proof.verify.checker import _Leaf
+from methods.proof.verify.checker import Leaf
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 from methods.proof.verify.force_limits import known_of
 from methods.proof.verify.windows import WindowLimits
@@ -26,7 +26,7 @@ def checked(leaf: dict[str, Any], bound: Fraction) -> str:
     """Why a leaf is refused; empty if it is not."""
     wall = ExactWall(tree())
     try:
-        _Leaf(wall, {"tight": [], "still": []} | leaf).check(wall, bound)
+        Leaf(wall, {"tight": [], "still": []} | leaf).check(wall, bound)
     except CertificateError as error:
         return str(error)
     return ""

@@ -22,7 +22,7 @@ from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.soft_wall import SoftWall
 from methods.de.engines.strips import CannotModel, require_lengths
 from methods.de.settings import ReleaseSettings, SoftSettings, SweepSettings
-from methods.de.soft import SHARE, DeformableJoints, Holds, _fall_above, _saying_soft
+from methods.de.soft import SHARE, DeformableJoints, Holds, fall_above, saying_soft
 from methods.de.uneven.gapped import GappedTuning, GappedWall
 from methods.de.uneven.settled_contacts import POINT, with_contacts
 from tests.walls import assembly, running_bond, stack
@@ -177,10 +177,10 @@ def test_residuals_that_a_user_may_ask_for_are_shares_of_the_weight(name: str):
 def test_an_answer_says_by_how_much_rigid_joints_would_change_it(lean: float, words: str):
     """The lean is the share of the multiplier that the deformation of the joints takes."""
     found = Answer(Status.OK, Finding.COLLAPSES, "fell", 0.4, details={"lean": lean})
-    assert words in _saying_soft(found, SoftSettings(lean=0.03)).sentence
+    assert words in saying_soft(found, SoftSettings(lean=0.03)).sentence
     assert found.details["soft_joints"] is True
     firm = Answer(Status.OK, Finding.COLLAPSES, "fell", 0.4, details={"lean": lean})
-    assert _saying_soft(firm, SoftSettings(lean=0.06)).sentence == "fell"
+    assert saying_soft(firm, SoftSettings(lean=0.06)).sentence == "fell"
     assert firm.details["soft_joints"] is False
 
 
@@ -189,5 +189,5 @@ def test_the_fall_above_a_multiplier_is_sought_by_rises_that_double():
     wall = assembly(stack(1, 0.4, 0.2), 0.5)
     holds = Holds(SoftWall(wall, 1e4, 0.5, 1e-3), SoftSettings())
     assert holds.rests(0.0)
-    assert _fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * SHARE * 0.45)
-    assert _fall_above(holds, 0.45, 0.48) is None
+    assert fall_above(holds, 0.45, 1.0) == pytest.approx(0.45 + 64 * SHARE * 0.45)
+    assert fall_above(holds, 0.45, 0.48) is None

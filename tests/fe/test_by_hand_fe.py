@@ -21,7 +21,7 @@ from methods.springs.model.wall_model import WallModel, build_model
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.direction import PathDirection
 from methods.springs.path.path_record import PathEnd, PathRecord
-from methods.springs.path.plateau import PlateauState, _of_many_mechanisms, _solve_last_piece, check
+from methods.springs.path.plateau import PlateauState, check, of_many_mechanisms, solve_last_piece
 from methods.springs.rest.equilibrium import gravity_state
 from methods.springs.warm_up import block_on_halves
 from tests.known_walls import box, of_blocks
@@ -130,7 +130,7 @@ def test_a_mechanism_on_which_the_live_load_does_no_work_is_no_collapse_of_a_pat
     assert not follower._is_collapse(without_end)
 
 
-@pytest.mark.parametrize("solve", [_solve_last_piece, _of_many_mechanisms])
+@pytest.mark.parametrize("solve", [solve_last_piece, of_many_mechanisms])
 def test_a_state_beside_the_plateau_is_brought_to_it(solve: Callable[..., PlateauState]) -> None:
     """Two blocks twice as high as wide topple at .5; springs along joints are .4 times as stiff as across."""
     wall = of_blocks([box("a", 0.0, 0.0, 1.0, 2.0), box("b", 4.0, 0.0, 1.0, 2.0)], 0.9)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from drystone.cli.drawings import _looked_at
+from drystone.cli.drawings import looked_at
 from harness.model.errors import InputError
 from harness.model.reading import read_wall
 from tests.fuzz.hostile import KINDS
@@ -31,7 +31,7 @@ def outcome(path: Path) -> tuple[str, float]:
         said = str(error)
     read = time.process_time()
     try:
-        seen = f"{len(_looked_at(str(path), ()).marks)} marks"
+        seen = f"{len(looked_at(str(path), ()).marks)} marks"
     except InputError as error:
         seen = str(error)
     return f"{said}\n{seen}", max(read - began, time.process_time() - read)

@@ -19,12 +19,12 @@ from methods.la.core.state import CollapseState, local_residuals, residuals
 from methods.la.core.vertex_programmes import ForceProgramme, RowScaling, row_scaling
 from methods.la.find_certificate import certificate
 from methods.la.interior.arc import ArcPath, Stepping
-from methods.la.interior.associated import EndOfPath, _by_interior_point, solve_associated
+from methods.la.interior.associated import EndOfPath, by_interior_point, solve_associated
 from methods.la.interior.interior_point import PathResult, start_point
 from methods.la.interior.interior_starting_point import phase_one_forces
 from methods.la.interior.newton_step import Direction, Point
 from methods.la.interior.region import in_whole, moving_region
-from methods.la.least import _chosen, _of_uneven, confirmed
+from methods.la.least import chosen_state, confirmed, of_uneven
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.search import Search
@@ -216,7 +216,7 @@ def test_a_change_and_half_another_add_in_every_part() -> None:
 def test_the_central_path_alone_ends_at_the_associated_maximum_of_the_simplex_method(friction: float) -> None:
     problem = make_problem(running_bond(3, 2, 0.2, friction))
     newton = NewtonMatrix(problem)
-    ended, least = _by_interior_point(problem, newton, EndOfPath()), solve_associated(problem, newton, "highs")
+    ended, least = by_interior_point(problem, newton, EndOfPath()), solve_associated(problem, newton, "highs")
     assert ended is not None
     assert ended.state is not None
     assert least.state is not None
@@ -228,13 +228,13 @@ def test_an_end_of_the_central_path_that_is_not_exact_enough_is_left_to_the_simp
     problem = make_problem(running_bond(2, 2, 0.2, 0.7))
     newton = NewtonMatrix(problem)
     never = EndOfPath(exact=0.0)
-    assert _by_interior_point(problem, newton, never) is None
+    assert by_interior_point(problem, newton, never) is None
     least, instead = (solve_associated(problem, newton, *how) for how in (("highs",), ("interior", never)))
     assert least.state is not None
     assert instead.state is not None
     assert instead.state.multiplier == pytest.approx(least.state.multiplier, rel=1e-12)
     for bias in EndOfPath().biases[:2]:
-        ended = _by_interior_point(problem, newton, EndOfPath(biases=(bias,)))
+        ended = by_interior_point(problem, newton, EndOfPath(biases=(bias,)))
         assert ended is not None
         assert ended.state is not None
         assert ended.state.multiplier == pytest.approx(least.state.multiplier, rel=1e-9)
@@ -288,9 +288,9 @@ def test_of_states_of_an_uneven_wall_the_least_that_forces_confirm_is_chosen() -
     claimed = CollapseState(np.zeros((3, 3)), 0.1, motion, lifts)
     with search.record.trying("by hand", search.budget.spent) as tried:
         tried.states.append(claimed)
-        assert _chosen(search) is None
+        assert chosen_state(search) is None
         tried.states.append(replace(claimed, multiplier=0.3, moving=slides))
-    chosen = _chosen(search)
+    chosen = chosen_state(search)
     assert chosen is not None
     least = chosen[0]
     assert problem.to_multiplier(least.multiplier) == pytest.approx(0.3, rel=1e-12)
@@ -304,13 +304,13 @@ def test_a_tree_proves_nothing_of_an_uneven_wall_if_its_own_state_is_not_confirm
     newton, units = NewtonMatrix(problem), RowScaling(np.full(2, 0.5), np.ones(1))
     sliding = replace(state(problem, NONE, 0.4, [1.0, 0.0, 0.0]), moving=SLIDING)
     opening = replace(sliding, multiplier=0.1, moving=OPENING)
-    best, proof = _of_uneven(problem, newton, units, [sliding], TreeProof(sliding, 0.4, 7))
+    best, proof = of_uneven(problem, newton, units, [sliding], TreeProof(sliding, 0.4, 7))
     assert best.multiplier == pytest.approx(0.4, abs=1e-12)
     assert (proof.state, proof.lower_bound, proof.nodes) == (best, 0.4, 7)
-    best, proof = _of_uneven(problem, newton, units, [sliding], TreeProof(opening, 0.1, 7))
+    best, proof = of_uneven(problem, newton, units, [sliding], TreeProof(opening, 0.1, 7))
     assert best.multiplier == pytest.approx(0.4, abs=1e-12)
     assert (proof.state, proof.lower_bound, proof.nodes) == (best, 0.0, 7)
-    best, proof = _of_uneven(problem, newton, units, [opening], TreeProof(opening, 0.1, 7))
+    best, proof = of_uneven(problem, newton, units, [opening], TreeProof(opening, 0.1, 7))
     assert best is opening
     assert proof.lower_bound == 0.1
 
@@ -333,7 +333,7 @@ def test_a_path_that_is_taken_up_again_goes_on_with_half_the_stride_and_lengthen
 def test_the_associated_maximum_is_found_by_the_solver_asked_for_or_by_size() -> None:
     problem = make_problem(running_bond(2, 2, 0.2, 0.7))
     newton = NewtonMatrix(problem)
-    ended = _by_interior_point(problem, newton, EndOfPath())
+    ended = by_interior_point(problem, newton, EndOfPath())
     assert ended is not None
     size = problem.n_interfaces
     for solver, above, by_path in (

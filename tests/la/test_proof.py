@@ -9,7 +9,7 @@ from benchmarks.walls import small_arch
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
-from methods.la.certify.proof import TreeProof, _Certificates, _Part, prove
+from methods.la.certify.proof import LeafCertificates, TreePart, TreeProof, prove
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import CollapseState
@@ -80,8 +80,8 @@ def test_contacts_that_a_certificate_needs_bound_without_the_others() -> None:
     """Of parts that hold these and more the same vertex is the proof; the programmes with these alone say so too."""
     problem, _, proof = proof_from(six_blocks(), 3000)
     limit = proof.lower_bound
-    certificates, programme = _Certificates(Search(problem, NewtonMatrix(problem)), limit), ForceProgramme(problem)
-    assert all(certificates.bound(_Part(tight, still, 0.0, 0)) for tight, still in proof.leaves)
+    certificates, programme = LeafCertificates(Search(problem, NewtonMatrix(problem)), limit), ForceProgramme(problem)
+    assert all(certificates.bound(TreePart(tight, still, 0.0, 0)) for tight, still in proof.leaves)
     assert 0 < len(certificates.tight) + len(certificates.still) < len(proof.leaves)
     for tight in certificates.tight:
         least = programme.extreme(greatest=False, tight=tight)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import drystone
-from drystone.safety import FactorOfSafety, ReducedWall, _Search, factor, factor_by
+from drystone.safety import FactorOfSafety, FactorSearch, ReducedWall, factor, factor_by
 from drystone.walls import Wall
 from harness.engine.judge import judge
 from harness.model.errors import InputError
@@ -183,7 +183,7 @@ def test_glue_holds_a_block_whose_fall_without_it_is_not_proved():
 
 
 def test_a_search_that_stops_says_nothing_of_more_friction():
-    search = _Search(lambda at: made_up(at, 0.0, (0.0, 0.3), Status.NOT_CONVERGED))
+    search = FactorSearch(lambda at: made_up(at, 0.0, (0.0, 0.3), Status.NOT_CONVERGED))
     search.bracket(100.0)
     found = FactorOfSafety(UPRIGHT, "b", 0.0, 0.0, search.upper, None, search.falls, search.runs, search.reason)
     assert found.sentence.startswith("The wall falls with its friction divided by 0.5; no state was found that stands.")
@@ -211,7 +211,7 @@ def made_up(at: float, limit: float, doubt: tuple[float, float], status: Status)
 
 
 def test_the_ends_close_in_on_factors_that_decide_nothing():
-    search = _Search(lambda at: made_up(at, 1.2, (1.1, 1.25), Status.NOT_CONVERGED))
+    search = FactorSearch(lambda at: made_up(at, 1.2, (1.1, 1.25), Status.NOT_CONVERGED))
     search.bracket(100.0)
     search.bisect(EXACT)
     assert (search.lower, search.upper) == (pytest.approx(1.1, rel=EXACT), pytest.approx(1.25, rel=EXACT))
@@ -219,20 +219,20 @@ def test_the_ends_close_in_on_factors_that_decide_nothing():
 
 
 def test_a_run_that_is_cut_off_ends_the_search():
-    search = _Search(lambda at: made_up(at, 1.2, (1.1, 1.5), Status.TIMEOUT))
+    search = FactorSearch(lambda at: made_up(at, 1.2, (1.1, 1.5), Status.TIMEOUT))
     search.bracket(100.0)
     search.bisect(EXACT)
     assert (search.lower, search.upper, search.runs) == (1.0, 2.0, 4)
 
 
 def test_a_run_without_friction_that_is_cut_off_is_called_so():
-    search = _Search(lambda at: made_up(at, 1.2, (1.1, math.inf), Status.TIMEOUT))
+    search = FactorSearch(lambda at: made_up(at, 1.2, (1.1, math.inf), Status.TIMEOUT))
     search.bracket(100.0)
     assert (search.runs, search.reason) == (1, "Without friction the run decides nothing: Why.")
 
 
 def test_a_wall_as_drawn_that_decides_nothing_has_no_factor():
-    search = _Search(lambda at: made_up(at, 1.2, (0.9, 1.1), Status.NOT_CONVERGED))
+    search = FactorSearch(lambda at: made_up(at, 1.2, (0.9, 1.1), Status.NOT_CONVERGED))
     search.bracket(100.0)
     search.bisect(EXACT)
     found = FactorOfSafety(

@@ -16,11 +16,11 @@ from harness.model.build import build
 from harness.model.contacts import find_contacts
 from harness.model.errors import InputError
 from harness.model.inspection import inspect
-from harness.model.load_cases import _count
+from harness.model.load_cases import loads_in
 from harness.model.load_fields import Loads
 from harness.model.method_registry import check_takes, load_method
 from harness.model.reading import parse_wall, read_wall
-from harness.model.repair import _met, _once
+from harness.model.repair import met_points, without_doubles
 from harness.model.units import KILONEWTONS, unit_weight_in_kn_m3
 from tests.walls import running_bond, stack, wall_data
 
@@ -48,7 +48,7 @@ def test_an_outline_drawn_twice_differs_by_no_more_than_the_snap_along_its_lengt
         for name, x in (("a", 0.0), ("b", 0.01))
     ]
     wall = parse_wall({"format": "wall/1", "friction": 0.5, "blocks": squares}, "")
-    kept, doubles = _once(list(wall.blocks), snap)
+    kept, doubles = without_doubles(list(wall.blocks), snap)
     assert [block.id for block in kept] == left
     assert doubles == ([("b", "a")] if left == ["a"] else [])
 
@@ -56,9 +56,9 @@ def test_an_outline_drawn_twice_differs_by_no_more_than_the_snap_along_its_lengt
 def test_points_meet_at_their_mean_if_none_moves_farther_than_the_snap():
     row = np.array([[0.0, 0.0], [0.25, 0.0], [0.5, 0.0], [9.0, 0.0]])
     met = [[0.25, 0.0], [0.25, 0.0], [0.25, 0.0], [9.0, 0.0]]  # the outer two move by just the snap
-    assert _met(row, 0.25).tolist() == met
+    assert met_points(row, 0.25).tolist() == met
     longer = np.array([[0.0, 0.0], [0.25, 0.0], [0.5, 0.0], [0.75, 0.0]])
-    assert _met(longer, 0.25).tolist() == longer.tolist()
+    assert met_points(longer, 0.25).tolist() == longer.tolist()
 
 
 def test_a_wall_is_called_by_its_file_unless_a_name_is_given(tmp_path: Path):
@@ -71,7 +71,7 @@ def test_a_wall_is_called_by_its_file_unless_a_name_is_given(tmp_path: Path):
 def test_forces_and_pressures_of_a_load_case_are_counted_together():
     pressure = {"from": [0, 0], "to": [1, 0], "uniform": 1.0}
     load = {"points": [{"block": "1", "at": [0, 0], "force": [1, 0]}] * 2, "pressures": [pressure] * 3}
-    assert _count(Loads.model_validate({"live": load, "dead": {"body": [{"per_weight": [1, 0]}]}})) == 6
+    assert loads_in(Loads.model_validate({"live": load, "dead": {"body": [{"per_weight": [1, 0]}]}})) == 6
 
 
 def test_the_support_that_moves_is_named():

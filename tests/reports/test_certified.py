@@ -13,7 +13,7 @@ import pytest
 
 import drystone
 from drystone import certificates
-from drystone.certificates import _below, with_certificates
+from drystone.certificates import is_below, with_certificates
 from drystone.cli import terminal
 from harness.engine.compare import recall
 from harness.engine.regression import violations
@@ -197,4 +197,4 @@ def test_windows_exclude_no_multiplier_below_zero(from_zero: bool, below: bool):
     wall = drystone.new_wall("stack", count=2, width=0.3, height=0.2, friction=0.5)
     (item,) = drystone.compare(wall, ["la"], isolated=False).run.cases
     negative = item.results[0].model_copy(update={"multiplier": -0.1})
-    assert _below(negative, Certified(0.2, "", "", from_zero)) is below
+    assert is_below(negative, Certified(0.2, "", "", from_zero)) is below

@@ -22,7 +22,7 @@ from reports.drawing import looks
 from reports.drawing.force_drawing import force_drawing
 from reports.figures.profile import profile_figure
 from reports.page import diff_page, glance, study_page, vectors
-from reports.page.reference_tables import _HELD_CELLS
+from reports.page.reference_tables import HELD_CELLS
 from tests.reports import samples
 
 
@@ -138,9 +138,9 @@ def test_counts_are_whole_and_no_other_quantity_is_rounded_to_a_whole_number(qua
         reference="r", quantity=quantity, value=expected, expected=expected, tolerance=1e-9, gate=True,
         verdict=Verdict.AGREES, sentence="",
     )  # fmt: skip
-    assert _HELD_CELLS["expected"](ComparedRow(solved(), compared, None)).text.startswith(text)
+    assert HELD_CELLS["expected"](ComparedRow(solved(), compared, None)).text.startswith(text)
     in_words = compared.model_copy(update={"quantity": "blocks", "expected": "many"})
-    assert _HELD_CELLS["expected"](ComparedRow(solved(), in_words, None)).text == "many"
+    assert HELD_CELLS["expected"](ComparedRow(solved(), in_words, None)).text == "many"
 
 
 def test_what_changed_stands_in_the_table_and_what_did_not_is_folded_away():

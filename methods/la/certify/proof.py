@@ -96,7 +96,7 @@ def _below(multiplier: float) -> float:
 
 
 @dataclass
-class _Part:
+class TreePart:
     """The states with slacks `tight` and rates `still` (m, 4) at zero.
 
     Attributes:
@@ -121,7 +121,7 @@ class _Tree:
         self._search = search
         self._work = _DeadWork(search.problem)
         self.known = known
-        self.parts: list[_Part] = []
+        self.parts: list[TreePart] = []
         self.open: list[tuple[float, int]] = []
         self.divisions = 0
 
@@ -130,7 +130,7 @@ class _Tree:
         """Multiplier from which on no other state is sought."""
         return _below(self.known.multiplier)
 
-    def leaves(self, divisions: int | None = None) -> list[_Part]:
+    def leaves(self, divisions: int | None = None) -> list[TreePart]:
         """The parts that there were after so many divisions, by default after all."""
         count = self.divisions if divisions is None else divisions
         return [part for part in self.parts if part.born <= count < part.divided]
@@ -154,12 +154,12 @@ class _Tree:
         Args:
             tight, still: (m, 4) contacts; bound: of its parent; least_work: of its `still`, if known.
         """
-        part = _Part(tight, still, bound, self.divisions)
+        part = TreePart(tight, still, bound, self.divisions)
         self.parts.append(part)
         if self._decide(part, least_work):
             heapq.heappush(self.open, (part.bound, len(self.parts) - 1))
 
-    def _decide(self, part: _Part, least_work: float | None) -> bool:
+    def _decide(self, part: TreePart, least_work: float | None) -> bool:
         """Bound a part; whether it is to be divided. One that no programme decides keeps the bound of its parent."""
         search, spent = self._search, self._search.budget.spent
         spent.programmes += 1
@@ -195,7 +195,7 @@ class _Tree:
         return False
 
 
-def _bounded_to_rounding(search: Search, parts: list[_Part], limit: float, programmes: int) -> bool:
+def _bounded_to_rounding(search: Search, parts: list[TreePart], limit: float, programmes: int) -> bool:
     """Whether every part is found to have a bound of at least `limit` that is computed to rounding of its own terms.
 
     The tree itself trusts programmes that round at 1e-9 of a mean block weight.
@@ -203,16 +203,16 @@ def _bounded_to_rounding(search: Search, parts: list[_Part], limit: float, progr
     Args:
         search: of the wall; parts: of the tree; limit: scaled multiplier; programmes: after which it is given up.
     """
-    certificates, spent = _Certificates(search, limit), search.budget.spent
+    certificates, spent = LeafCertificates(search, limit), search.budget.spent
     last = spent.programmes + programmes
     return all(spent.programmes < last and certificates.bound(part) for part in sorted(parts, key=_held))
 
 
-def _held(part: _Part) -> int:
+def _held(part: TreePart) -> int:
     return int((part.tight | part.still).sum())
 
 
-class _Certificates:
+class LeafCertificates:
     """Exact vertices that bound parts of a tree from below, each wherever it holds.
 
     By weak duality a vertex bounds every part that holds at zero the contacts where its multipliers have a sign that
@@ -234,14 +234,14 @@ class _Certificates:
         self.tight: list[BoolArray] = []
         self.still: list[BoolArray] = []
 
-    def bound(self, part: _Part) -> bool:
+    def bound(self, part: TreePart) -> bool:
         """Whether no state of a part has a multiplier below the limit: by a vertex known, or else a new one."""
         if _covers(self.tight, part.tight) or _covers(self.still, part.still):
             return True
         first = part.least_work >= self._limit  # What the tree took the bound from is likelier to hold.
         return any(self._by_work(part) if work else self._by_forces(part) for work in (first, not first))
 
-    def _by_forces(self, part: _Part) -> bool:
+    def _by_forces(self, part: TreePart) -> bool:
         """Whether the multiplier of forces bounds a part; where it does, the contacts that this needs are kept."""
         rates = self._rates(part.tight)
         if rates is not None:
@@ -259,7 +259,7 @@ class _Certificates:
         self._spent.programmes += 1
         return rates_against_any_load(self._problem, self._units, tight)
 
-    def _by_work(self, part: _Part) -> bool:
+    def _by_work(self, part: TreePart) -> bool:
         """Whether the work of mechanisms bounds a part; where it does, the contacts that this needs are kept."""
         self._spent.programmes += 1
         found = self._programme.least_dead_work(part.still)

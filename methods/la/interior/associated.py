@@ -82,7 +82,7 @@ def solve_associated(
         end: of its own interior point.
     """
     if solver == "interior" or (solver == "auto" and problem.n_interfaces > end.above):
-        result = _by_interior_point(problem, newton, end)
+        result = by_interior_point(problem, newton, end)
         if result is not None:
             return result
     found = force_programme(problem).extreme(greatest=True, solver="simplex" if solver == "highs" else "auto")
@@ -126,7 +126,7 @@ def _duality_gap(problem: Problem, state: CollapseState) -> float:
     return abs(state.multiplier - kinematic) / max(1.0, abs(state.multiplier))
 
 
-def _by_interior_point(problem: Problem, newton: NewtonMatrix, end: EndOfPath) -> AssociatedResult | None:
+def by_interior_point(problem: Problem, newton: NewtonMatrix, end: EndOfPath) -> AssociatedResult | None:
     """The end of the central path made exact, or None where neither it nor its own motion proves the multiplier.
 
     Where it is not clear which contacts press and which move, exact forces beside the motion of the path do: both are

@@ -128,7 +128,7 @@ def check_state(wall: ExactWall, multiplier: Fraction, state: Any) -> None:
 
 def _check_leaves(wall: ExactWall, bound: Fraction, documents: Any) -> None:
     """Whether the leaves hold all states, and each excludes those below the bound."""
-    leaves = [_Leaf(wall, leaf) for leaf in listed(documents)]
+    leaves = [Leaf(wall, leaf) for leaf in listed(documents)]
     _check_cover(wall, [(leaf.tight, leaf.still) for leaf in leaves])
     for leaf in leaves:
         leaf.check(wall, bound)
@@ -154,7 +154,16 @@ def _check_cover(wall: ExactWall, leaves: list[tuple[frozenset[int], frozenset[i
         open_nodes.append([(tight - k, still - k) for tight, still in node if k <= still])
 
 
-class _Leaf:
+class Leaf:
+    """A leaf of the tree of cases: contacts that are tight and contacts that are still, and what excludes the rest.
+
+    Args:
+        wall: the wall; document: the leaf as the certificate states it.
+
+    Raises:
+        CertificateError: it is no leaf.
+    """
+
     def __init__(self, wall: ExactWall, document: Any) -> None:
         wall.in_time()
         self.tight, self.still = (contacts(document[name], wall.n_interfaces) for name in ("tight", "still"))
@@ -170,6 +179,7 @@ class _Leaf:
             self.dead, self.live = fractions_of(document["parts"], 2)
 
     def check(self, wall: ExactWall, bound: Fraction) -> None:
+        """Raise CertificateError unless no state of these contacts is below the bound."""
         if self.velocities is not None:
             self._check_velocities(wall, bound, self.velocities)
         elif self.forces is not None:

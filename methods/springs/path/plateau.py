@@ -71,7 +71,7 @@ def finish(model: WallModel, present: PathSnapshot, kept: PathSnapshot | None = 
     shots = [present] if kept is None else [present, kept]
     best: PlateauState | None = None
     for shot in shots:
-        for way in (_solve_last_piece, _as_traced, _of_many_mechanisms):
+        for way in (solve_last_piece, _as_traced, of_many_mechanisms):
             with suppress(SingularTangent):
                 state = way(model, shot)
                 if best is None or state.worst < best.worst:
@@ -111,7 +111,7 @@ def _collapse_state(
     return check(assembly, multiplier, forces, field / (abs(live) or 1.0))
 
 
-def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
+def solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
     """Solve for the state and the mechanism of the singular piece. Raises SingularTangent when it is not unique.
 
     Points that rounding carried a hair across their breakpoint change state, and the piece is solved for again.
@@ -139,7 +139,7 @@ def _solve_last_piece(model: WallModel, shot: PathSnapshot) -> PlateauState:
     return _collapse_state(model, multiplier, opening, trial, state, mechanism)
 
 
-def _of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
+def of_many_mechanisms(model: WallModel, shot: PathSnapshot) -> PlateauState:
     """State and mechanism of a piece on which several motions have no stiffness, so that no system has one solution.
 
     Points that hardly move in the velocity are held. Some inertia makes the tangents regular, and iteration removes
