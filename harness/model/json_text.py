@@ -49,6 +49,11 @@ _KINDS = {
 """What is no text, by its first bytes."""
 
 
+def value_text(value: Any) -> str:
+    """A value as a file writes it, cut where it is long: true, null and text in double quotes, not True and None."""
+    return json.dumps(value, ensure_ascii=False, default=str)[:MOST_SHOWN]
+
+
 def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
     """The content of a regular file of limited size: no device, no pipe, nothing that never ends.
 

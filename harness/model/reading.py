@@ -14,7 +14,7 @@ from harness.model.build import Built, build
 from harness.model.errors import MOST_WORDED, InputError, did_you_mean, in_file, raise_faults
 from harness.model.field_words import SCOPE, names_at, outside_the_model, remedy_at
 from harness.model.fields import MOST_BLOCKS, TAGS
-from harness.model.json_text import MOST_SHOWN, read_json
+from harness.model.json_text import MOST_SHOWN, read_json, value_text
 from harness.model.names import faults_of_data
 from harness.model.wall import Wall
 
@@ -29,6 +29,8 @@ _PLAIN = {
     "model_attributes_type": "it should be an object, in braces",
     "float_type": "it should be a number",
     "int_type": "it should be a whole number",
+    "int_from_float": "it should be a whole number",
+    "literal_error": "it should be {expected}",
     "string_type": "it should be text, in quotes",
     "bool_type": "it should be true or false",
     "too_long": "it has {actual_length} entries, and may have {max_length} at most",
@@ -95,7 +97,7 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
         context = dict(fault.get("ctx", {}))
         if context.get("actual_length", 0) is None:  # pydantic does not count the entries of an object
             context["actual_length"] = len(fault["input"])
-        message = _PLAIN[fault["type"]].format(**context)
+        message = _PLAIN[fault["type"]].format(**context).replace("'", '"')
     if fault["type"] == "extra_forbidden":
         return _unknown_field(model, fault["loc"], place, source)
     if fault["type"] in _SHAPES:
@@ -103,7 +105,7 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
     elif fault["type"] == "union_tag_not_found":
         remedy = remedy_at(model, (*fault["loc"], "type"))
     if "input" in fault and not isinstance(fault["input"], dict | list):
-        message += f" (given: {repr(fault['input'])[:MOST_SHOWN]})"
+        message += f" (given: {value_text(fault['input'])})"
     return InputError(message, remedy, place, source)
 
 
@@ -173,7 +175,7 @@ def parse_wall(data: Any, source: str) -> Wall:
     if not isinstance(data, dict):
         raise InputError("a wall is a JSON object", 'Begin with {"format": "wall/1", ...}', source=source)
     if data.get("format") != "wall/1":
-        given = f"format is {data['format']!r}" if "format" in data else "it has no format"
+        given = f"format is {value_text(data['format'])}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
     for entries, most in _MOST_ENTRIES.items():
         listed = data.get(entries)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -238,3 +239,25 @@ def accepts(model: type[BaseModel], name: str, text: str) -> bool:
     except ValidationError as error:
         return not any(fault["loc"] and fault["loc"][0] == name for fault in error.errors())
     return True
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"friction": [None]}, "it should be"),
+        ({"thickness": "1"}, 'thickness: it should be a number (given: "1")'),
+        ({"unit_weight": math.nan}, "unit_weight: it should be a finite number (given: NaN)"),
+        ({"friction": -math.inf}, "friction: it should be a finite number (given: -Infinity)"),
+        ({"thickness": True}, "thickness: it should be a number (given: true)"),
+        ({"title": 3}, "title: it should be text, in quotes (given: 3)"),
+        ({"pattern": {"type": "stack", "width": 1, "height": 1, "count": 1.5}}, "it should be a whole number"),
+        ({"pattern": {"type": "ladder"}}, 'its type is "ladder", and should be one of "running_bond", "ring"'),
+        ({"units": {"length": "parsec"}}, 'it should be "m", "dm", "cm"'),
+    ],
+)
+def test_what_was_given_is_told_as_the_file_writes_it(fields: dict[str, Any], said: str):
+    """Words of Python, None, True and 'text', are no words of a wall file."""
+    with pytest.raises(InputError) as caught:
+        parse_wall({"format": "wall/1", "friction": 0.5, "blocks": []} | fields, "w.json")
+    assert said in str(caught.value)
+    assert not any(word in str(caught.value) for word in ("None", "True", "False", "nan", "'"))

@@ -315,7 +315,7 @@ def test_a_joint_that_lifts_as_it_slides_gives_its_friction_beside():
 
 
 def test_a_wall_of_another_format_is_refused_with_what_it_gives():
-    for data, words in ((two_blocks(format="wall/2"), "format is 'wall/2'"), ({"blocks": []}, "it has no format")):
+    for data, words in ((two_blocks(format="wall/2"), 'format is "wall/2"'), ({"blocks": []}, "it has no format")):
         with pytest.raises(InputError, match=words):
             parse_wall(data, "w")
     for data in ([], None, "wall/1"):

@@ -16,6 +16,7 @@ from harness.model.assembly import Assembly
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
+from harness.model.json_text import value_text
 from harness.model.method import Answer, Finding, Status
 from harness.model.reading import validate
 
@@ -85,7 +86,7 @@ def answer_of(data: Any, assembly: Assembly, source: str) -> Answer:
     if not isinstance(data, dict):
         raise InputError("a result is a JSON object", 'Begin with {"format": "result/1", ...}', source=source)
     if data.get("format") != "result/1":
-        given = f"format is {data['format']!r:.60}" if "format" in data else "it has no format"
+        given = f"format is {value_text(data['format'])}" if "format" in data else "it has no format"
         raise InputError(given, 'This release reads "format": "result/1"', "format", source)
     found = validate(ResultDocument, data, source)
     arrays = {name: getattr(found, name) for name in (*_OF_INTERFACES, *_OF_BLOCKS)}
