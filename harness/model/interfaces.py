@@ -135,7 +135,7 @@ def faults_of_given(joints: Joints, index: dict[str, int], fixed: np.ndarray) ->
         a, b = (index[block_id] for block_id in interface.between)
         if a == b:
             wrong = ("a block cannot touch itself", "Name two blocks")
-        elif interface.start == interface.end:
+        elif np.linalg.norm(np.subtract(interface.end, interface.start)) == 0.0:
             wrong = ("its two ends coincide", 'Give a segment of some length in "from" and "to"')
         elif fixed[a] and fixed[b]:
             wrong = ("both of its blocks are fixed", "Leave it out: it carries no unknown")

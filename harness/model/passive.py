@@ -28,7 +28,8 @@ FILL = "fill"
 _UPRIGHT = 0.01
 """Slope from the vertical within which a face is upright, as surveys are rounded; beyond it an overhang is none."""
 _NOTHING = 1e-9
-"""Slope from the level within which a face is level, and share of the largest force that is none: rounding."""
+"""Slope from the level within which a face is level; share of the largest force, and of the depth and the height of a
+face, that is none: rounding."""
 
 _Strip = tuple[int, int, FloatArray]
 """Part of a face: its edge, 1 where the fill is on its right and -1 on its left, and its two ends (2, 2) [length]."""
@@ -113,7 +114,7 @@ def _pressed(level: float, ends: FloatArray) -> FloatArray:
     """Integrals over the vertical projection of a strip below a level: of z, of z x and of z y; and its height."""
     low, high = ends[np.argsort(ends[:, 1])]
     top, bottom = max(level - high[1], 0.0), level - low[1]
-    if bottom <= 0.0:
+    if bottom - top <= _NOTHING * max(bottom, high[1] - low[1]):
         return np.zeros(4)
     force = 0.5 * (bottom - top) * (bottom + top)
     depth = (bottom**2 + bottom * top + top**2) / 3.0 * (bottom - top) / force

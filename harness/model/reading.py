@@ -32,6 +32,7 @@ _PLAIN = {
     "int_from_float": "it should be a whole number",
     "literal_error": "it should be {expected}",
     "string_type": "it should be text, in quotes",
+    "string_too_short": "it should not be empty",
     "bool_type": "it should be true or false",
     "too_long": "it has {actual_length} entries, and may have {max_length} at most",
     "too_short": "it has {actual_length} entries, and should have at least {min_length}",

@@ -45,6 +45,8 @@ def _with_residual(plastic: Answer, residual: Answer) -> Answer:
     rely = "Rely on the residual answer"
     if residual.flow == "associated" and residual.finding is not Finding.FALLS:
         rely = "Both are upper bounds: rely on the least residual multiplier (`la`)"
+    if residual.status is not Status.OK:
+        rely = "Rely on the residual answer of another method"
     reason = "because joints of mortar are brittle"
     if bears_less_with_strength(plastic, residual):
         rely, reason = (

@@ -65,6 +65,13 @@ def test_block_slides_into_the_fill_at_friction_and_passive_force(method: str):
     assert asked(method, built(block(0.2, push=-1.0))) == pytest.approx(0.2, rel=EXACT), "away from it nothing resists"
 
 
+@pytest.mark.parametrize("level", [1e-300, 1e-160, 1e-12])
+def test_fill_that_reaches_no_more_of_a_face_than_rounding_is_refused(level: float):
+    """Its force would be zero, and where it acts a division of zero by zero."""
+    with np.errstate(all="raise"), pytest.raises(InputError, match="no face of a free block that it may resist"):
+        built(block(0.2, level=level))
+
+
 @pytest.mark.parametrize("method", TAKEN)
 def test_slender_block_topples_against_the_fill_at_a_third_of_its_depth(method: str):
     width = 0.3

@@ -153,6 +153,7 @@ def test_floating_blocks_are_named_one_or_several():
     [
         ({"between": ["a", "a"], "from": [0, 0], "to": [1, 0]}, "a block cannot touch itself"),
         ({"between": ["a", "ground"], "from": [1, 0], "to": [1, 0]}, "its two ends coincide"),
+        ({"between": ["a", "ground"], "from": [0, 0], "to": [1e-300, 0]}, "its two ends coincide"),
         ({"between": ["ground", "other"], "from": [0, 0], "to": [1, 0]}, "both of its blocks are fixed"),
         ({"between": ["a", "beside"], "from": [0.5, 0], "to": [1.5, 0]}, "do not lie on opposite sides"),
     ],

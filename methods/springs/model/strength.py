@@ -45,7 +45,7 @@ def with_strength(model: WallModel, bar_stiffness: FloatArray) -> WallModel:
     shear = np.maximum(constant[:, 2] - middle - assembly.law.with_friction(friction).by_friction(tension), 0.0)
     joint = np.concatenate([np.flatnonzero((shear > 0.0) & ~bar), np.flatnonzero((shear > 0.0) & bar)])
     own = np.where(bar, 1.0, shear / np.where(shear > 0.0, shear + friction, 1.0))  # under the unit of force
-    left = np.where(friction > 0.0, 1.0 - own, 1.0)[model.interface]  # without friction those springs never stick
+    left = np.where(own < 1.0, 1.0 - own, 1.0)[model.interface]  # with friction of none those springs never stick
     count = len(joint)
     along = model.rows[joint].copy()
     along[:, :2] = 0.0
