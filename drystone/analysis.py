@@ -13,6 +13,7 @@ from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
 from harness.engine.plan import check_methods, check_shares
 from harness.engine.run import Limits, Run
+from harness.model.columns import ResultRow
 from harness.model.comparison import CaseResults
 from harness.model.errors import InputError
 from harness.model.method import Answer, Method
@@ -62,11 +63,16 @@ class Result(Record):
             self._of = certified_results(self._wall.case, self), self
         return proof_of(*self._of)
 
+    @property
+    def row(self) -> ResultRow:
+        """What the columns of results.csv are functions of."""
+        return ResultRow(self, self.proof, self._wall.case.load_in_words)
+
     def to_pandas(self) -> pd.DataFrame:
         """One row with the columns of results.csv; `attrs["units"]` names the unit of each measured column."""
         from reports.page.export import result_frame
 
-        return result_frame([(self, self.proof)])
+        return result_frame([self.row])
 
     def forces_to_pandas(self) -> pd.DataFrame:
         """Contact forces: one row an interface with its blocks and n1, n2, s; `attrs["units"]` names the unit."""

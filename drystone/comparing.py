@@ -50,7 +50,7 @@ class Comparison:
         """One row a wall and method, the columns of results.csv; `attrs["units"]` names the units."""
         from reports.page.export import result_frame
 
-        return result_frame((result, result.proof) for result in self.results)
+        return result_frame(result.row for result in self.results)
 
     def multipliers(self) -> pd.DataFrame:
         """Multipliers by wall (rows) and method (columns), in the order given."""

@@ -27,7 +27,7 @@ from harness.model.live_load import direction_in_words
 from harness.model.method import Finding, Status
 from harness.model.proof import LABELS, Proof, Standing, least_known, proof_of
 from harness.model.result import Judgement, Result, Verdict, plastic_and_residual_of, plastic_of, residual_of
-from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text
+from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text, strength_in_words
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import in_units, values
 from reports.labels.numbers import count, met
@@ -87,7 +87,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
         table.add_column(_escape(column.head), justify="right" if column.numeric else "left", no_wrap=whole)
     for case in compared.cases:
         for number, result in enumerate(case.results):
-            row = ResultRow(result, proof_of(case, result))
+            row = ResultRow(result, proof_of(case, result), case.case.load_in_words)
             table.add_row(
                 *["" if number and column.name == "case" else _escape(column.text(row)) for column in columns],
                 end_section=number == len(case.results) - 1,
@@ -141,7 +141,9 @@ def _print_envelopes(found: Sequence[Envelope]) -> None:
         print(visible(f"Load cases of {wall}:"))
         print_rows(
             [
-                {"load case": name} | {each.method: ranked_text(each.results[k]) for each in mine}
+                {"load case": name}
+                | ({"load at": mine[0].places[k]} if any(mine[0].places) else {})
+                | {each.method: ranked_text(each.results[k]) for each in mine}
                 for k, name in enumerate(mine[0].names)
             ]
         )
@@ -252,11 +254,7 @@ def _bar_lines(case: Case, result: Result, most: int = 8) -> Iterator[tuple[str,
 
 def _of_state(result: Result) -> str:
     """Of which multiplier the forces of a result are and, where it stands beside another answer, with which joints."""
-    joints = ""
-    if residual_of(result) is not None:
-        joints = ", with the strength of the joints"
-    elif plastic_of(result) is not None:
-        joints = ", without the strength of brittle joints"
+    joints = strength_in_words(result)
     return f"The forces below are those at the multiplier {result.forces_multiplier or 0.0:.7g}{joints}."
 
 
@@ -286,7 +284,7 @@ def print_result(result: Result, case: Case, proof: Proof) -> None:
     rows = [
         ("wall", f"{case.file.title} (free blocks: {result.blocks}, interfaces: {result.interfaces})"),
         ("units", case.wall.units_sentence),
-        ("live load", direction_in_words(case) or "none"),
+        ("live load", ", ".join(filter(None, (direction_in_words(case), case.load_place))) or "none"),
         ("method", result.method),
         ("finding", answer_text(result) if result.finding is Finding.COLLAPSES else str(result.finding)),
         ("", result.sentence),

@@ -103,10 +103,16 @@ def expand(wall: Path, output: Path | None, load_case: str | None) -> None:
 
     With --load-case it is the wall under that load case, which all commands take.
     """
-    built = read_wall(wall) if load_case is None else load_cases_of(case_of_wall(wall), load_case)[0].built
+    if load_case is None:
+        built = read_wall(wall)
+        explicit = built.wall
+    else:
+        (chosen,) = load_cases_of(case_of_wall(wall), load_case)
+        built = chosen.built
+        explicit = built.wall.model_copy(update={"title": chosen.file.title})
     for sentence in built.warnings:
         say(f"drystone: {sentence}", err=True)
-    text = wall_json(built.wall)
+    text = wall_json(explicit)
     if output is None:
         say_json(text)
     else:

@@ -86,6 +86,7 @@ def remember(store: Store, compared: ComparisonRun, runs: Sequence[Run]) -> None
             "origin": item.case.origin,
             "wall_id": item.case.wall_id,
             "load_case": item.case.load_case,
+            "load_place": item.case.load_place,
         }
         for item in compared.cases
     }
@@ -117,6 +118,7 @@ class _KeptCase(BaseModel, defer_build=True):
     origin: str
     wall_id: str = ""
     load_case: str = ""
+    load_place: str = ""
 
 
 class _KeptRun(BaseModel, defer_build=True):
@@ -157,6 +159,7 @@ def recall(store: Store) -> ComparisonRun | None:
             item.origin,
             wall_id=item.wall_id,
             load_case=item.load_case,
+            load_place=item.load_place,
         )
         for name, item in kept.cases.items()
     }

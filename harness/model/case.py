@@ -113,6 +113,7 @@ class Case:
         notes: what a person should hear about how the case was found.
         wall_id: id of the wall of which this is one of several load cases; empty if it is the only one.
         load_case: name of this load case; empty if it is the only one.
+        load_place: where loads that travel stand in it, as "axle on v5 at (-1.03, 1.94) m"; empty without any.
         argument: what names the wall to a command: the id of the case, or its file; empty where none has this load.
     """
 
@@ -122,6 +123,7 @@ class Case:
     notes: tuple[str, ...] = ()
     wall_id: str = ""
     load_case: str = ""
+    load_place: str = ""
     argument: str = ""
 
     @cached_property
@@ -139,6 +141,11 @@ class Case:
     def content(self) -> str:
         """Hash of what decides an answer about it."""
         return hash_of(self.wall)
+
+    @property
+    def load_in_words(self) -> str:
+        """The load case and where loads that travel stand in it; empty if it is the only one."""
+        return f"{self.load_case} ({self.load_place})" if self.load_place else self.load_case
 
     @property
     def id(self) -> str:

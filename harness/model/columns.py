@@ -17,10 +17,11 @@ from harness.model.table import TableColumn
 
 @dataclass(frozen=True)
 class ResultRow:
-    """What a column of results is a function of: a result, and what is proved of it."""
+    """What a column of results is a function of: a result, what is proved of it, and its load case in words."""
 
     result: Result
     proof: Proof = field(default_factory=Proof)
+    load: str = ""
 
 
 ResultColumn = TableColumn[ResultRow]
@@ -71,6 +72,7 @@ RESULTS: tuple[ResultColumn, ...] = (
     _text("case", "id of the wall"),
     _text("method", "name of the method"),
     _text("family", "kind of method, by which the report groups"),
+    _text("load_case", "of the wall, and where loads that travel stand in it", attrgetter("load")),
     _text("status", "how the run ended"),
     _text("finding", "finding on the wall"),
     _text("sentence", "the answer in a sentence"),

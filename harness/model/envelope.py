@@ -60,12 +60,19 @@ class Envelope:
         method: that answered.
         names: (k,) of the load cases.
         results: (k,) in the same order.
+        places: (k,) where loads that travel stand, in words; empty without any.
     """
 
     wall: str
     method: str
     names: tuple[str, ...]
     results: tuple[Result, ...]
+    places: tuple[str, ...]
+
+    def named(self, name: str) -> str:
+        """A load case in quotes, with where loads that travel stand in it."""
+        place = self.places[self.names.index(name)]
+        return f'"{name}" ({place})' if place else f'"{name}"'
 
     @property
     def governing(self) -> tuple[str, ...]:
@@ -99,7 +106,7 @@ class Envelope:
             verdict = "no load case makes the wall collapse"
         else:
             lowest = ranked_text(self.results[self.names.index(self.governing[0])])
-            named = first_few([f'"{name}"' for name in self.governing], _MOST_NAMED)
+            named = first_few([self.named(name) for name in self.governing], _MOST_NAMED)
             alike = len(self.governing) > 1
             verdict = f"load case{'s' * alike} {named} govern{'s' * (not alike)}, {lowest}"
         return f"{self.method}: {verdict}."
@@ -122,7 +129,8 @@ class Envelope:
             "load_cases": [
                 {"load_case": name, "finding": str(result.finding), "multiplier": result.multiplier}
                 | ({} if pair is None else {"residual_multiplier": pair[1].multiplier})
-                for name, result, pair in zip(self.names, self.results, pairs, strict=True)
+                | ({"load_place": place} if place else {})
+                for name, place, result, pair in zip(self.names, self.places, self.results, pairs, strict=True)
             ],
             "ranked_by": ranked_by,
             "governing": list(self.governing),
@@ -132,7 +140,8 @@ class Envelope:
 
 def envelope(cases: Sequence[Case], results: Sequence[Result]) -> Envelope:
     """The envelope of the answers (k,) of one method to the load cases (k,) of one wall."""
-    return Envelope(cases[0].wall_id, results[0].method, tuple(case.load_case for case in cases), tuple(results))
+    names, places = zip(*((case.load_case, case.load_place) for case in cases), strict=True)
+    return Envelope(cases[0].wall_id, results[0].method, names, tuple(results), places)
 
 
 def envelopes(compared: Sequence[CaseResults]) -> list[Envelope]:

@@ -36,11 +36,13 @@ class NamedLoads:
         own: what it adds to the gravity and the dead load of `loads`.
         common: factor of these.
         place: where the file says it.
+        stands: where loads that travel stand in it, in words; empty without any.
     """
 
     own: Loads
     place: str
     common: float = 1.0
+    stands: str = ""
 
 
 def named_loads(wall: Wall) -> dict[str, NamedLoads]:
@@ -62,7 +64,7 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
         loads = upward.loads(travelling, place, MOST_LOAD_CASES - len(found))
         members[name] = [f"{name}-{number}" for number in range(1, len(loads) + 1)]
         for each, own in zip(members[name], loads, strict=True):
-            _add(found, each, NamedLoads(own, place))
+            _add(found, each, NamedLoads(own, place, stands=f"{name} {_stands(own, wall)}"))
     alone, added = dict(found), 0
     for name, factors in wall.combinations.items():
         for suffix, chosen in _chosen(name, factors, members, alone, MOST_LOAD_CASES - len(found)):
@@ -86,6 +88,15 @@ def named_loads_of(case: Case) -> dict[str, NamedLoads]:
     """
     with in_file(case.origin):
         return named_loads(case.wall)
+
+
+def _stands(own: Loads, wall: Wall) -> str:
+    """Where the force of a load that travels acts, in words."""
+    assert own.live is not None
+    (force,) = own.live.points
+    x, y = (0.0 if abs(part) <= 1e-9 * math.hypot(*force.at) else part for part in force.at)  # rounding
+    unit = "" if wall.units.length == "1" else f" {wall.units.length}"
+    return f"on {force.block} at ({x:.4g}, {y:.4g}){unit}"
 
 
 def loads_in(loads: Loads) -> int:
@@ -148,7 +159,8 @@ def _combined(
             raise InputError(f'the load case "{each}" has a gravity of its own', remedy, place)
     live = [times(case.own.live, chosen[each]) for each, case in cases.items() if case.own.live is not None]
     dead = together(*(times(case.own.dead, chosen[each]) for each, case in cases.items()))
-    return NamedLoads(Loads(dead=dead, live=together(*live) if live else None), place, factors.get(DEAD, 1.0))
+    stands = ", ".join(case.stands for case in cases.values() if case.stands)
+    return NamedLoads(Loads(dead=dead, live=together(*live) if live else None), place, factors.get(DEAD, 1.0), stands)
 
 
 def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None = None) -> Wall:
@@ -246,19 +258,20 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
     with in_file(case.origin):
         known = named_loads(case.wall)
         wanted = {each: f"{case.id}-{each}" for each in (known if name is None else [name])}
-        return [_one(case, each, wall, built) for each, wall, built in each_built(case.wall, wanted, known)]
+        built = each_built(case.wall, wanted, known)
+        return [_one(case, each, known[each].stands, *made) for each, *made in built]
 
 
 def title_of_wall(case: Case) -> str:
     """The title of a wall of which a case is a load case, without the name of that."""
     title, _, name = case.file.title.rpartition(_TITLE_JOINT)
-    return title if title and case.load_case.startswith(name) else case.file.title
+    return title if title and case.load_case.startswith(name.partition(" (")[0]) else case.file.title
 
 
-def _one(case: Case, name: str, wall: Wall, built: Built) -> Case:
+def _one(case: Case, name: str, stands: str, wall: Wall, built: Built) -> Case:
     update: dict[str, Any] = {
         "id": f"{case.id}-{name}",
-        "title": f"{case.file.title}{_TITLE_JOINT}{name}",
+        "title": f"{case.file.title}{_TITLE_JOINT}{name}" + (f" ({stands})" if stands else ""),
         "kind": "multiplier" if wall.loads.live is not None else "stability",
         "references": [],
     }
@@ -269,6 +282,7 @@ def _one(case: Case, name: str, wall: Wall, built: Built) -> Case:
         origin=f'{Path(case.origin).name}, load case "{name}"',
         wall_id=case.id,
         load_case=name,
+        load_place=stands,
     )
     found.__dict__["built"] = built  # where the places of its faults in the file are known: `Case.built` keeps it
     return found

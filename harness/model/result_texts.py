@@ -8,7 +8,7 @@ from typing import Any
 
 from harness.model.method import Finding, Status
 from harness.model.proof import Proof, Standing
-from harness.model.result import Result, Verdict
+from harness.model.result import Result, Verdict, plastic_of, residual_of
 
 PROVED = "∎"
 """Before the multiplier of a proved minimum."""
@@ -36,6 +36,13 @@ def answer_text(result: Result) -> str:
     if result.traits.brackets and result.bracket is not None:
         return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]{result.width_in_words}"
     return "-" if result.multiplier is None else _number(result.multiplier, 7, result.judge.decimals)
+
+
+def strength_in_words(result: Result) -> str:
+    """What is counted of the strength of joints in a result, behind a comma; empty where it has no other beside it."""
+    if residual_of(result) is not None:
+        return ", with the strength of the joints"
+    return "" if plastic_of(result) is None else ", without the strength of brittle joints"
 
 
 def _number(value: float, decimals: int, known: int | None = None) -> str:

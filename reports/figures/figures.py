@@ -6,6 +6,7 @@ Widths are those of a journal: one column of 88 mm, two of 180 mm. The same inpu
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +21,7 @@ from harness.model.build import Built
 from harness.model.case import Case
 from harness.model.errors import InputError
 from harness.model.result import Result
+from harness.model.result_texts import strength_in_words
 from harness.model.writing import replacing
 from reports.drawing.display_list import Box, Frame
 from reports.drawing.force_drawing import force_drawing
@@ -28,7 +30,7 @@ from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.wall_drawing import plain_wall
 from reports.figures.plot import plot
 from reports.geometry import shapes, thrust_lines
-from reports.labels.wall_summary import friction_text, value_in_words
+from reports.labels.wall_summary import friction_text, given_in_words, value_in_words
 
 COLUMN, PAGE = 88 / 25.4, 180 / 25.4
 """Width of one and of two columns [inch]."""
@@ -198,13 +200,14 @@ def blank(assembly: Assembly, rows: int, columns: int, head: str = "", box: Box 
     frame = Frame.of(assembly)
     left, top, wide, high = box or frame.box
     width = COLUMN if columns == 1 else PAGE
-    above = 0.22 + (0.34 if head else 0.0)
+    head = _fitting(head, width)
+    above = 0.22 + (0.17 * max(head.count("\n") + 1, 2) if head else 0.0)
     height = min(rows * (width / columns * min(high / wide, 1.6) + 0.28) + above - 0.22, 9.2)
     page = Figure(figsize=(width, height))
     axes = page.subplots(rows, columns, squeeze=False)
     page.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=1.0 - above / height, wspace=0.03, hspace=0.12)
     if head:
-        page.suptitle(_fitting(head, width), x=0.01, y=1.0 - 0.05 / height, ha="left", va="top", fontsize=7.5)
+        page.suptitle(head, x=0.01, y=1.0 - 0.05 / height, ha="left", va="top", fontsize=7.5)
     for ax in axes.ravel():
         (x0, y0), (x1, y1) = frame.back(np.array([(left, top + high), (left + wide, top)])).tolist()
         ax.set_xlim(x0, x1)
@@ -215,9 +218,8 @@ def blank(assembly: Assembly, rows: int, columns: int, head: str = "", box: Box 
 
 
 def _fitting(text: str, width: float) -> str:
-    """As much of each line of a text as fits a width [inch] at the size of titles: about 18 letters an inch."""
-    most = int(18.0 * width)
-    return "\n".join(line if len(line) <= most else f"{line[: most - 1]}…" for line in text.split("\n"))
+    """A text in lines that fit a width [inch] at the size of titles: about 18 letters an inch."""
+    return "\n".join(part for line in text.split("\n") for part in textwrap.wrap(line, int(18.0 * width)))
 
 
 def _title(title: str, assembly: Assembly) -> str:
@@ -225,7 +227,9 @@ def _title(title: str, assembly: Assembly) -> str:
 
 
 def _panels(case: Case, results: list[Result], rows: list[str]) -> Figure:
-    page, axes = blank(case.assembly, len(rows), len(results), head=_title(case.file.title, case.assembly))
+    counted = "".join(dict.fromkeys(map(strength_in_words, results)))
+    head = f"{case.file.title}\n{given_in_words(case)}{counted}"
+    page, axes = blank(case.assembly, len(rows), len(results), head=head)
     for column, result in enumerate(results):
         for row, what in enumerate(rows):
             if (result.mechanism if what == "mechanism" else result.forces) is None:

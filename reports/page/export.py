@@ -15,7 +15,7 @@ from harness.model.case import Case
 from harness.model.columns import COMPARISONS, RESULTS, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.joint_margins import ANSWERED, joint_rows
-from harness.model.proof import Proof, proof_of
+from harness.model.proof import proof_of
 from harness.model.result import Result
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import Row, TableColumn, in_units, types, units, values
@@ -46,7 +46,8 @@ def export(run: ComparisonRun, folder: Path, *, drawn: bool = False, columns: Se
         columns: of the tables of results.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    results = result_frame(((r, proof_of(item, r)) for item in run.cases for r in item.results), columns)
+    rows = (ResultRow(r, proof_of(item, r), item.case.load_in_words) for item in run.cases for r in item.results)
+    results = result_frame(rows, columns)
     contents: dict[str, bytes] = {"results.csv": _csv(results).encode()}
     contents["comparisons.csv"] = _csv(_comparison_frame(run)).encode()
     contents["joints.csv"] = _joints_csv(run).encode()
@@ -171,9 +172,9 @@ def _comparison_frame(run: ComparisonRun) -> pd.DataFrame:
     return _frame(COMPARISONS, [row for item in run.cases for _, row in compared_rows(item)])
 
 
-def result_frame(results: Iterable[tuple[Result, Proof]], columns: Sequence[ResultColumn] = RESULTS) -> pd.DataFrame:
-    """Results, each with what is proved of it, with the columns of results.csv; units in `attrs["units"]`."""
-    return _frame(columns, [ResultRow(result, proof) for result, proof in results])
+def result_frame(rows: Iterable[ResultRow], columns: Sequence[ResultColumn] = RESULTS) -> pd.DataFrame:
+    """Results with the columns of results.csv; units in `attrs["units"]`."""
+    return _frame(columns, rows)
 
 
 def joint_frame(case: Case, results: Iterable[Result]) -> pd.DataFrame:

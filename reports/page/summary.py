@@ -236,9 +236,9 @@ def which_number(item: CaseResults, unanswered: Sequence[str] = ()) -> str:
         return doubt
     value = numbers.multiplier(least.multiplier)
     proof = proof_of(item, least)
-    under = f" in load case {item.case.load_case}" if item.case.load_case else ""
-    known = f"{value} ({least.method}){under}, {proof.label}: {proof.clause}."
-    brittle = _without_strength(item, lead)
+    under = f" in load case {item.case.load_in_words}" if item.case.load_case else ""
+    brittle = _without_strength(item, lead, under)
+    known = f"{value} ({least.method}){'' if brittle else under}, {proof.label}: {proof.clause}."
     given = "As its joints break" if item.case.assembly.breaks else "With its strength"
     sentences = [doubt] * bool(doubt)
     sentences.append(f"{brittle} {given}: {known}" if brittle else f"{lead} {known}")
@@ -254,7 +254,7 @@ def which_number(item: CaseResults, unanswered: Sequence[str] = ()) -> str:
     return " ".join(sentences)
 
 
-def _without_strength(item: CaseResults, lead: str) -> str:
+def _without_strength(item: CaseResults, lead: str, under: str) -> str:
     """The number to use for joints with cohesion or tensile strength, which are brittle in mortar; empty for others."""
     found = least_safe(item)
     if found is None or not math.isfinite(found[0]):
@@ -262,11 +262,11 @@ def _without_strength(item: CaseResults, lead: str) -> str:
     pair = plastic_and_residual_of(found[1])
     if pair is not None and bears_less_with_strength(*pair):
         return (
-            f"{lead} {numbers.multiplier(found[0])} ({found[1].method}), below the residual multiplier: "
+            f"{lead} {numbers.multiplier(found[0])} ({found[1].method}){under}, below the residual multiplier: "
             "without dilatancy a wall may collapse at less with cohesion and tensile strength than without."
         )
     return (
-        f"{lead} {numbers.multiplier(found[0])} ({found[1].method}), the residual multiplier: mortar is "
+        f"{lead} {numbers.multiplier(found[0])} ({found[1].method}){under}, the residual multiplier: mortar is "
         "brittle, and this is the wall without its cohesion and tensile strength."
     )
 

@@ -45,7 +45,7 @@ class RunRow:
     @cached_property
     def row(self) -> ResultRow:
         """What columns are functions of."""
-        return ResultRow(self.result, proof_of(self.item, self.result))
+        return ResultRow(self.result, proof_of(self.item, self.result), self.item.case.load_in_words)
 
     def cell(self, column: str | ResultColumn) -> Cell:
         """What the report prints of a column, which may be named."""

@@ -9,14 +9,13 @@ from importlib.resources import files
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
-from harness.model.result import Result
 from reports.drawing.display_list import DisplayList, Text
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.svg import standalone
 from reports.drawing.wall_drawing import wall_drawing
 from reports.geometry import shapes
-from reports.labels.wall_summary import friction_text, value_in_words
+from reports.labels.wall_summary import drawn_in_words, given_in_words
 from reports.page.summary import figure_of
 
 LETTERS = 120
@@ -37,11 +36,11 @@ def drawings(item: CaseResults) -> dict[str, str]:
     for result in item.results:
         if _fits(result.mechanism, case.assembly.n_blocks):
             found[f"{result.method}-mechanism"] = headed(
-                case, mechanism_drawing(case, result), _title(result, "mechanism")
+                case, mechanism_drawing(case, result), drawn_in_words(result, "mechanism")
             )
         if _fits(result.forces, case.assembly.n_interfaces):
             found[f"{result.method}-forces"] = headed(
-                case, force_drawing(case, result), _title(result, "contact forces")
+                case, force_drawing(case, result), drawn_in_words(result, "contact forces")
             )
     overlay, caption = figure_of(item)
     if overlay is not None:
@@ -53,12 +52,8 @@ def _fits(field: Sequence[object] | None, rows: int) -> bool:
     return field is not None and len(field) == rows
 
 
-def _title(result: Result, what: str) -> str:
-    return f"{result.method}, {value_in_words(result)}: {what}"
-
-
 def headed(case: Case, drawing: DisplayList, said: str) -> str:
-    """A drawing as a file, under the title of its case, its friction and what is drawn.
+    """A drawing as a file, under the title of its case, its friction and live load, and what is drawn.
 
     Args:
         case: the case.
@@ -66,7 +61,7 @@ def headed(case: Case, drawing: DisplayList, said: str) -> str:
         said: what is drawn, in a line or more; may be empty.
     """
     left, top, width, _ = drawing.frame.box
-    lines = [case.file.title, f"tan φ = {friction_text(case.assembly)}", *_broken(said, width)]
+    lines = [line for text in (case.file.title, given_in_words(case), said) for line in _broken(text, width)]
     above = LINE * len(lines)
     heading = [
         Text("", (left + 60, top - above + LINE * (k + 1)), line, LETTERS, "start") for k, line in enumerate(lines)

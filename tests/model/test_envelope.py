@@ -60,7 +60,7 @@ def test_equal_load_cases_govern_alike():
 def test_of_many_load_cases_the_first_few_are_named():
     _, results = answers()
     names = tuple(f"gust-{k}" for k in range(20))
-    found = Envelope("leaning", "la-associated", names, (results[0],) * 20)
+    found = Envelope("leaning", "la-associated", names, (results[0],) * 20, ("",) * 20)
     assert '"gust-4", "gust-5" and 14 more govern' in found.verdict
     assert found.governing == names
     failed = results[0].model_copy(update={"status": Status.REFUSED})
@@ -83,7 +83,8 @@ def test_envelopes_are_by_wall_and_method_and_walls_of_one_load_case_have_none()
     cases, results = answers()
     alone = drystone.library_wall("single-block").case
     rows = [CaseResults(case, [result]) for case, result in zip([*cases, alone], [*results, results[0]], strict=True)]
-    assert envelopes(rows) == [Envelope("leaning", "la-associated", ("to the right", "to the left"), tuple(results))]
+    sides = ("to the right", "to the left")
+    assert envelopes(rows) == [Envelope("leaning", "la-associated", sides, tuple(results), ("", ""))]
 
 
 FRICTION, COHESION, WEIGHT, ADDED, PUSHED = 0.5, 5.0, 1.0, 1.0, 1.5
@@ -140,7 +141,7 @@ def test_first_screen_ranks_by_the_residual_multiplier_and_says_so(tmp_path: Pat
         ("light", "<td>0.50000 (la)</td><td>5.5000 (la)</td><td>least, to rounding</td><td>yes</td>"),
         ("heavy", "<td>0.66667 (la)</td><td>4.0000 (la)</td><td>least, to rounding</td><td></td>"),
     ]
-    assert "For safety use 0.50000 (la), the residual multiplier" in page
+    assert "For safety use 0.50000 (la) in load case light, the residual multiplier" in page
 
 
 @pytest.mark.parametrize(

@@ -208,6 +208,35 @@ def test_line_load_is_its_length_times_itself_whatever_the_thickness():
         assert not live[:-1].any()
 
 
+def test_every_output_of_the_governing_load_case_says_where_the_load_stands(tmp_path: Path):
+    """A block on two posts: the force on it is borne by both, beyond them by none, and is furthest out at the right."""
+    posts = [
+        {"id": name, "polygon": [[x, 0], [x + 0.2, 0], [x + 0.2, 1], [x, 1]], "fixed": True}
+        for name, x in (("left", 0.4), ("right", 1.4))
+    ]
+    lintel = {"id": "lintel", "polygon": [[0, 1], [2.2, 1], [2.2, 1.2], [0, 1.2]]}
+    document = {"format": "wall/1", "title": "Lintel", "unit_weight": 20, "friction": 0.65, "blocks": [*posts, lintel]}
+    travels = {"travelling": {"axle": DOWN | {"per_face": 5}}, "combinations": {"twice": {"axle": 2}}}
+    path = tmp_path / "lintel.json"
+    path.write_text(json.dumps(document | travels))
+    place = "axle on lintel at (1.98, 1.2) m"
+    report = ("--methods", "la", "--report", tmp_path / "r.html", "--store", tmp_path / "s.sqlite")
+    done = command("compare", path, *report)
+    assert done.returncode == 0, done.stderr
+    assert f'la: load case "twice-5" ({place}) governs' in done.stdout
+    assert f"in load case twice-5 ({place}), least" in (tmp_path / "r.html").read_text()
+    assert f'"twice-5 ({place})"' in (tmp_path / "r-data" / "results.csv").read_text()
+    told = json.loads(command("compare", path, *report, "--json").stdout)
+    (rows,) = (each["load_cases"] for each in told["envelopes"])
+    assert {row["load_case"]: row["load_place"] for row in rows}["twice-5"] == place
+    assert f"live load  downwards, {place}" in command("run", "la", path, "--load-case", "twice-5").stdout
+    alone = json.loads(command("expand", path, "--load-case", "twice-5").stdout)
+    assert alone["title"] == f"Lintel, load case twice-5 ({place})"
+    again = command("report", "--report", tmp_path / "r.html", "--store", tmp_path / "s.sqlite")
+    assert again.returncode == 0, again.stderr
+    assert f"in load case twice-5 ({place}), least" in (tmp_path / "r.html").read_text()
+
+
 def test_file_round_trip_and_command(tmp_path: Path):
     document = semicircle(0.2, travelling={"wheel": DOWN}, combinations={"uls": {"dead": 1.35, "wheel": 1.5}})
     wall = parse_wall(document, "")

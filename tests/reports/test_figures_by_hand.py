@@ -53,12 +53,13 @@ def test_a_drawing_is_a_column_wide_or_a_page_and_as_high_as_it_needs():
     assert page.get_size_inches()[1] == 9.2, "of a page"
 
 
-def test_a_long_head_is_cut_to_eighteen_letters_an_inch():
+def test_a_long_head_is_broken_at_eighteen_letters_an_inch_and_has_room():
     wall = samples.block().assembly
     most = int(18 * COLUMN)
-    for text, shown in (("a" * most, "a" * most), ("a" * (most + 1), "a" * (most - 1) + "…")):
+    for text, shown, above in (("a" * most, "a" * most, 0.56), ("a" * most + " b", "a" * most + "\nb", 0.73)):
         page, _ = figures.blank(wall, 1, 1, head=f"{text}\nshort")
         assert page.get_suptitle() == f"{shown}\nshort"
+        assert page.subplotpars.top == pytest.approx(1.0 - above / page.get_size_inches()[1])
 
 
 def test_the_domain_is_filled_where_it_is_exact_and_shown_with_a_margin():

@@ -15,7 +15,7 @@ from harness.engine.sweep.expand import expand, sources_of
 from harness.engine.sweep.frame import tidy
 from harness.engine.sweep.quick import quick_study
 from harness.engine.sweep.running import STUDY, StudyColumn, refused_row, row_of
-from harness.model.columns import LISTED, PRINTED, RESULTS, ResultColumn
+from harness.model.columns import LISTED, PRINTED, RESULTS, ResultColumn, ResultRow
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Status
 from harness.model.proof import proof_of
@@ -63,7 +63,7 @@ def test_files_and_frames_hold_a_new_column(run: ComparisonRun, tmp_path: Path):
     with (tmp_path / "results.csv").open(encoding="utf-8", newline="") as stream:
         assert [row["twice"] for row in csv.DictReader(stream)] == ["0.2469134", ""]
     (item,) = run.cases
-    table = result_frame([(result, proof_of(item, result)) for result in item.results], (*RESULTS, TWICE))
+    table = result_frame([ResultRow(result, proof_of(item, result)) for result in item.results], (*RESULTS, TWICE))
     assert table["twice"].dtype == "Float64"
     assert table["twice"].isna().tolist() == [False, True]
     assert table.attrs["units"]["twice"] == "kN"
@@ -73,7 +73,7 @@ def test_parquet_holds_a_new_column(run: ComparisonRun, tmp_path: Path):
     pytest.importorskip("pyarrow", reason="it is large; `.ci/extras` runs this test")
     export(run, tmp_path, columns=(*RESULTS, TWICE))
     (item,) = run.cases
-    table = result_frame([(result, proof_of(item, result)) for result in item.results], (*RESULTS, TWICE))
+    table = result_frame([ResultRow(result, proof_of(item, result)) for result in item.results], (*RESULTS, TWICE))
     assert pd.read_parquet(tmp_path / "results.parquet")["twice"].equals(table["twice"])
 
 

@@ -192,7 +192,7 @@ def test_a_file_has_its_title_friction_and_contents_in_lines_above_the_drawing()
     lines = re.findall(r'<text x="(-?\d+)" y="(-?\d+)" font-size="120" style="text-anchor:start">([^<]*)</text>', text)
     assert lines == [
         (str(left + 60), str(top - 3 * 170 + 170 * k), line)
-        for k, line in enumerate(("The paper&#39;s block", "tan φ = 0.4, 0.6", "said"), start=1)
+        for k, line in enumerate(("The paper&#39;s block", "tan φ = 0.4, 0.6, live load to the right", "said"), start=1)
     ]
     assert f'viewBox="{left:.0f} {top - 510:.0f} {width:.0f} {height + 510:.0f}"' in text
 

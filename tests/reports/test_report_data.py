@@ -70,7 +70,9 @@ def test_parquet_has_typed_columns(folder: Path):
 
 def test_parquet_is_read_by_pandas_as_the_table_of_the_results(folder: Path):
     pytest.importorskip("pyarrow", reason="it is large; `.ci/extras` runs this test")
-    results = [(result, proof_of(item, result)) for item in samples.typical().cases for result in item.results]
+    results = [
+        columns.ResultRow(result, proof_of(item, result)) for item in samples.typical().cases for result in item.results
+    ]
     read = pd.read_parquet(folder / "results.parquet")
     pd.testing.assert_frame_equal(read, result_frame(results), check_column_type=False)
     assert dict(read.dtypes.astype(str)) == types(columns.RESULTS)
