@@ -90,10 +90,13 @@ class CapacityCurve:
         }
 
     def as_csv(self) -> str:
-        """One row a point."""
+        """One row a point; the head of the displacement has its unit."""
         import pandas as pd
 
-        return str(pd.DataFrame({"displacement": self.displacement, "multiplier": self.multiplier}).to_csv(index=False))
+        from reports.labels.numbers import labelled
+
+        columns = {labelled("displacement", self.unit): self.displacement, "multiplier": self.multiplier}
+        return str(pd.DataFrame(columns).to_csv(index=False))
 
     def plot(self) -> Figure:
         """The multiplier against the displacement, and the wall where it last bears a load."""

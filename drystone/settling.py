@@ -89,10 +89,14 @@ class SettledCollapse:
         }
 
     def as_csv(self) -> str:
-        """One row a point on the way."""
+        """One row a point on the way; heads have their units."""
         import pandas as pd
 
-        return str(pd.DataFrame({"displacement": self.displacement, "reaction": self.reaction}).to_csv(index=False))
+        from reports.labels.numbers import labelled
+
+        names, columns = ("displacement", "reaction"), (self.displacement, self.reaction)
+        heads = map(labelled, names, self.units)
+        return str(pd.DataFrame(dict(zip(heads, columns, strict=True))).to_csv(index=False))
 
     def plot(self) -> Figure:
         """The reaction against the displacement, and the wall where it last stands."""

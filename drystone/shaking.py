@@ -129,13 +129,15 @@ class Shaking:
         }
 
     def as_csv(self) -> str:
-        """One row a state: time [s], then ux, uy [length] and rotation [rad] of every free block."""
+        """One row a state: time [s], then ux, uy [length] and rotation [rad] of every free block; heads have units."""
         import pandas as pd
 
-        wall = self.wall.assembly
-        columns: dict[str, FloatArray] = {"time": self.time}
+        from reports.labels.numbers import labelled
+
+        wall, unit = self.wall.assembly, self.wall.units["length"]
+        columns: dict[str, FloatArray] = {"time [s]": self.time}
         for i in wall.free:
-            for k, what in enumerate(("ux", "uy", "rotation")):
+            for k, what in enumerate((labelled("ux", unit), labelled("uy", unit), "rotation [rad]")):
                 columns[f"{wall.block_ids[i]} {what}"] = self.places[:, i, k]
         return str(pd.DataFrame(columns).to_csv(index=False))
 

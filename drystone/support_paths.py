@@ -172,15 +172,17 @@ def _word(
 
 
 def paths_as_csv(paths: tuple[ReactionPath, ...]) -> str:
-    """One row a point of each path."""
+    """One row a point of each path; heads have their units."""
     import pandas as pd
+
+    from reports.labels.numbers import labelled
 
     tables = [
         pd.DataFrame(
             {
                 "support": "gives way" if path.gives_way else "pushes",
-                "displacement": path.displacement,
-                "reaction": path.reaction,
+                labelled("displacement", path.units[0]): path.displacement,
+                labelled("reaction", path.units[1]): path.reaction,
                 "slipping_points": path.slipping,
                 "open_points": path.opened,
             }

@@ -258,8 +258,8 @@ def load_cases_of(case: Case, name: str | None = None) -> list[Case]:
     with in_file(case.origin):
         known = named_loads(case.wall)
         wanted = {each: f"{case.id}-{each}" for each in (known if name is None else [name])}
-        built = each_built(case.wall, wanted, known)
-        return [_one(case, each, known[each].stands, *made) for each, *made in built]
+        found = each_built(case.wall, wanted, known)
+        return [_one(case, each, known[each].stands, wall, built) for each, wall, built in found]
 
 
 def title_of_wall(case: Case) -> str:

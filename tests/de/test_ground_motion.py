@@ -130,7 +130,7 @@ def test_command(tmp_path: Path):
     assert done.returncode == 0, done.stderr
     assert "The wall falls" in done.stdout
     assert "Engine: pymunk" in done.stdout
-    assert table.read_text(encoding="utf-8").startswith("time,1 ux,1 uy,1 rotation\n0.0,")
+    assert table.read_text(encoding="utf-8").startswith("time [s],1 ux [m],1 uy [m],1 rotation [rad]\n0.0,")
     done = command("shake", path, "--pulse", "0.8:0.1", "--multiple", "0.5", "--json", "-o", chart)
     listed = json.loads(done.stdout)
     assert (done.returncode, listed["finding"], listed["fallen"]) == (0, "stands", [])

@@ -254,6 +254,7 @@ def test_command(tmp_path: Path):
     assert "The support gives way: its reaction goes from" in done.stdout
     found = both(reaction_paths(drystone.build_wall(data(DOWN))))
     assert table.read_text(encoding="utf-8") == paths_as_csv(found)
+    assert paths_as_csv(found).startswith("support,displacement [m],reaction [kN],slipping_points,open_points\n")
     done = command("reaction", path, "--path", "--json", "-o", chart)
     listed = json.loads(done.stdout)
     assert listed["giving_way"]["value"] == pytest.approx(2.0 / 7.0 * WEIGHT, rel=EXACT)

@@ -196,6 +196,7 @@ def test_command(tmp_path: Path):
     assert done.returncode == 0, done.stderr
     assert "falls to zero at the displacement 0.2 m of the live load" in done.stdout
     assert table.read_text(encoding="utf-8") == followed(block()).as_csv()
+    assert table.read_text(encoding="utf-8").startswith("displacement [m],multiplier\n0.0,")
     done = command("capacity", path, "--block", "1", "--json", "-o", chart)
     listed = json.loads(done.stdout)
     assert listed["multiplier"][0] == pytest.approx(0.2, abs=SHARP)

@@ -274,7 +274,7 @@ def test_command(tmp_path: Path):
     ends = re.findall(r" ([0-9.e-]+) m[, ]", done.stdout)
     assert float(ends[0]) < float(ends[1])
     rows = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
-    assert rows[0] == ["displacement", "reaction"]
+    assert rows[0] == ["displacement [m]", "reaction [kN]"]
     assert float(rows[-1][0]) == pytest.approx(0.1410498, abs=DIGITS)
     done = command("reaction", path, "--until-collapse", "--json", "-o", picture)
     listed = json.loads(done.stdout)
