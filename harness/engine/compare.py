@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,9 @@ from harness.engine.run import Limits, Run
 from harness.engine.verdict import overall, theory_gates
 from harness.model.case import Case, CaseFile, Reference
 from harness.model.comparison import CaseResults, ComparisonRun
+from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
+from harness.model.method import Status, none_above
 from harness.model.reading import parse_wall, validate
 from harness.model.result import Result
 
@@ -40,9 +43,27 @@ def gather(cases: Sequence[Case], runs: Sequence[Run], results: Sequence[Result]
             ]
             comparisons = [*row.comparisons, *named]
             rows[run.method] = row.model_copy(update={"comparisons": comparisons, "verdict": overall(comparisons)})
-        found = CaseResults(case, list(rows.values()))
+        found = _with_upper_bound(CaseResults(case, list(rows.values())))
         gathered.append(CaseResults(case, found.results, theory_gates(found)))
     return gathered
+
+
+def _with_upper_bound(found: CaseResults) -> CaseResults:
+    """The results of a case; those without an answer end with the upper bound that another method has found."""
+    bound = found.associated
+    if bound is None or bound.multiplier is None:
+        return found
+    upper = AnswerDetails(bound.details).upper_bound or bound.multiplier
+    said = f"{none_above(upper)}, by {bound.method}"
+    return replace(
+        found,
+        results=[
+            result.model_copy(update={"sentence": f"{result.sentence.rstrip('.')}; {said}"})
+            if result.status not in (Status.OK, Status.REFUSED) and AnswerDetails(result.details).upper_bound is None
+            else result
+            for result in found.results
+        ],
+    )
 
 
 def _settings_text(run: Run) -> str:

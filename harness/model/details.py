@@ -94,6 +94,11 @@ class AnswerDetails:
         return bool(self.data.get("stopped_by_limit"))
 
     @property
+    def upper_bound(self) -> float | None:
+        """A multiplier above which no collapse state lies, whatever the flow."""
+        return _float(self.data.get("upper_bound", self.data.get("associated")))
+
+    @property
     def associated(self) -> float | None:
         """Of searches for the least state: the associated maximum."""
         return _float(self.data.get("associated"))

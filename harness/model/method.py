@@ -52,6 +52,11 @@ class Finding(StrEnum):
         return self in (Finding.COLLAPSES, Finding.AT_LIMIT)
 
 
+def none_above(upper: float) -> str:
+    """What an upper bound says, for the end of a sentence that finds no collapse state."""
+    return f"no collapse state lies above {upper:.7g}"
+
+
 @dataclass
 class Answer:
     """What a method found. n = number of blocks (fixed ones included), m = number of interfaces.

@@ -17,7 +17,7 @@ from typing import Any
 
 from harness.model.deadline import STOPPED, OutOfTime, best_so_far
 from harness.model.errors import first_few
-from harness.model.method import Answer, Status
+from harness.model.method import Answer, Status, none_above
 from methods.la.answers import (
     LOCAL_RESIDUAL,
     NO_MOTION,
@@ -146,8 +146,8 @@ def _stopped_before_the_first(search: Search, associated: CollapseState, toleran
     problem = search.problem
     greatest = problem.to_multiplier(associated.multiplier)
     sentence = (
-        f"No collapse state without dilatancy is known yet: the search was {STOPPED}. None lies above "
-        f"{greatest:.7g}, at which the wall collapses under associated flow."
+        f"No collapse state without dilatancy is known yet: the search was {STOPPED}; {none_above(greatest)}, at which "
+        "the wall collapses under associated flow."
     )
     details = _details(search, None, None) | {"stopped_by_limit": True}
     return collapse_answer(
@@ -160,11 +160,13 @@ def _nothing_found(search: Search) -> Answer:
         return unbounded_answer(NO_MOTION)
     if search.associated.outcome == "unbounded":
         return unbounded_answer(NO_STATE)
+    details = _details(search, None, None)
+    bound = f"; {none_above(details['associated'])}" if "associated" in details else ""
     return not_converged(
         "No contact forces fit the mechanisms that were tried, and no path of the wall with springs in its joints came "
-        "to a mechanism, so no collapse state is known.",
+        f"to a mechanism, so no collapse state is known{bound}.",
         search.budget.spent.newton_steps,
-        _details(search, None, None),
+        details,
     )
 
 

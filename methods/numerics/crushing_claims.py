@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.method import Answer, Finding, Status
+from harness.model.deadline import best_so_far
+from harness.model.method import Answer, Finding, Status, none_above
 from methods.numerics.claims import no_answer
 from methods.numerics.stress_blocks import greatest_by_chords
 
@@ -57,4 +58,13 @@ def falls_by_statics(assembly: Assembly) -> Answer | None:
 def not_found(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
     """The answer of a run that came to none, in a sentence; unless statics shows that the wall falls."""
     proof = falling_mechanism(assembly)
-    return no_answer(answer, sentence) if proof is None else falls(answer, proof)
+    return _below_greatest(assembly, answer, sentence) if proof is None else falls(answer, proof)
+
+
+def _below_greatest(assembly: Assembly, answer: Answer, sentence: str) -> Answer:
+    """The answer of a run that came to none, in a sentence, with what statics bears at most where there is time."""
+    upper = best_so_far(lambda: greatest_by_chords(assembly, assembly.dead, assembly.live).upper, lambda: np.inf)
+    if not np.isfinite(upper):
+        return no_answer(answer, sentence)
+    bounded = no_answer(answer, f"{sentence}; {none_above(upper)}")
+    return replace(bounded, details=answer.details | {"upper_bound": upper})
