@@ -43,7 +43,8 @@ class Sweep:
     Attributes:
         study: what was asked.
         rows: one a run, in the order of the study, whatever order they ended in.
-        warnings: sentences about what is doubtful in the walls as they are described, each with the name of the wall.
+        warnings: sentences about what is doubtful in the walls as they are described and as they vary, each with the
+            name of the first wall it is of.
     """
 
     study: Study
@@ -167,7 +168,7 @@ def sweep(
         where = executor or LocalExecutor(jobs)
         counting = nullcontext(progress or _silent)
         rows = rows_of(study, runs, opened, where, fresh=fresh, counting=lambda _: counting)
-    return Sweep(study, rows, warnings_of(sources))
+    return Sweep(study, rows, warnings_of(sources, runs))
 
 
 def rows_of(

@@ -160,8 +160,10 @@ def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
     Lengths are in the unit of the file. Outlines that are drawn twice are taken once; faces get a vertex where another
     block ends in them.
     """
-    mended = mend(parse_wall(read_document(wall), str(wall)), snap)
-    built = build(mended.wall, wall.stem)
+    described = parse_wall(read_document(wall), str(wall))
+    with in_file(str(wall)):
+        mended = mend(described, snap)
+        built = build(mended.wall, wall.stem)
     write_whole(output, wall_json(mended.wall))
     furthest = max((move.distance for move in mended.moves), default=0.0)
     if as_json:

@@ -39,6 +39,7 @@ from harness.engine.sweep.quick import quick_study
 from harness.engine.sweep.study import Study, read_study
 from harness.model.errors import InputError
 from harness.model.library import library
+from harness.model.method import Status
 from harness.model.writing import check_output
 
 OUT = Path("out")
@@ -85,10 +86,13 @@ def sweep_(what: str, dry_run: bool, scheduler: str | None, jobs: int, store: Pa
     drystone sweep my-study.toml --dry-run
     drystone sweep wall.json --vary friction=0.3:1.0:15 --methods la,fe,de
     drystone sweep wall-21 --imperfection 0.02:0.12 --seeds 50
+
+    Exit code 1: the judge rejects a run, or none has an answer.
     """
     asked, place = _study(what, rest)
     sources = sources_of(asked, rest["folders"], place)
-    runs, warnings = expand(asked, sources), warnings_of(sources)
+    runs = expand(asked, sources)
+    warnings = warnings_of(sources, runs)
     tell(warnings)
     if dry_run:
         _tell_plan(asked, runs, store, jobs, warnings, as_json=rest["as_json"])
@@ -131,7 +135,7 @@ def _executor(scheduler: str | None, jobs: int) -> Executor:
 
 
 def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
-    """Tables, page and a few lines for the terminal; exit code 1 if the judge rejects a run."""
+    """Tables, page and a few lines for the terminal; exit code 1 if the judge rejects a run, or none has an answer."""
     files = done.save(folder)
     page = folder.with_suffix(".html")
     if not rest["no_report"]:
@@ -145,6 +149,7 @@ def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
         "statuses": dict(statuses),
         "rejected": rejected,
         "warnings": list(done.warnings),
+        "remarks": list(done.summary.remarks),
         "files": [str(path) for path in files],
         "report": None if rest["no_report"] else str(page),
     }
@@ -157,7 +162,7 @@ def _leave(done: Sweep, folder: Path, rest: dict[str, Any]) -> None:
         for sentence in done.summary.remarks:
             say(sentence)
         say(f"Tables: {folder}/" + ("" if rest["no_report"] else f"\nReport: {page}"))
-    sys.exit(1 if rejected else 0)
+    sys.exit(1 if rejected or not statuses[str(Status.OK)] else 0)
 
 
 def _print_multipliers(done: Sweep, folder: Path, most: int = 40) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -256,6 +257,11 @@ def uncounted(count: int, more: str, element: str) -> InputError:
     fault = InputError(f"{count:,} more {more}", "Mend those listed first", element)
     fault.more = count - 1
     return fault
+
+
+def without_numbers(text: str) -> str:
+    """What texts have in common that differ in their numbers alone: the kind of what they say."""
+    return re.sub(r"[-+]?[0-9][0-9.,]*(e[-+]?[0-9]+)?", "#", text)
 
 
 def as_sentence(text: str) -> str:

@@ -37,6 +37,8 @@ _GREATEST_GRAVITY = 5.0
 """Multiple of the weight beyond which an acceleration in m/s2 is likelier: g is 9.8, factors of dead load below 2."""
 SIZES = (0.05, 250.0)
 """Extent of a wall [m]: a model on a tilting table has 0.1 and more, the highest masonry stands 170 high."""
+_THICKNESSES = (0.005, 250.0)
+"""Thickness of a block out of plane [m]: plates of a model have 0.01, a long dam is as thick as the highest is wide."""
 _SMALL_BLOCK = 1e-3
 """Size of a block in extents of the wall below which it is worth a warning."""
 _STRONGEST_BAR = 1e5
@@ -236,6 +238,7 @@ def _size_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
             shown = f"{metres / 1000.0:.3g} km" if metres > 1000.0 else f"{metres:.3g} m"
             given = f"{extent:g} {wall.units.length}" + ("" if wall.units_declared else ", no units being declared")
             sentences.append(f"the wall is {shown} across ({given}): the unit of length?")
+        sentences += _thickness_slips(wall, blocks)
     begins = np.cumsum([0, *(len(polygon) for polygon in free[:-1])])
     sizes = (np.maximum.reduceat(points, begins) - np.minimum.reduceat(points, begins)).max(axis=1)
     small = np.flatnonzero(sizes < _SMALL_BLOCK * extent)
@@ -246,6 +249,18 @@ def _size_slips(wall: Wall, blocks: list[Block], assembly: Assembly) -> list[str
             f"{first_few([names[k] for k in small.tolist()], 5)}"
         )
     return sentences
+
+
+def _thickness_slips(wall: Wall, blocks: list[Block]) -> list[str]:
+    """Sentences about free blocks that are hardly as thick as they are said to be."""
+    metre = METRES[wall.units.length]
+    thickness = {block.id: thickness_of(block, wall) for block in blocks if not block.fixed}
+    odd = [name for name, given in thickness.items() if not _THICKNESSES[0] <= given * metre <= _THICKNESSES[1]]
+    if not odd:
+        return []
+    more = f" and {len(odd) - 1} more" if len(odd) > 1 else ""
+    given = f"{thickness[odd[0]]:g} {wall.units.length}"
+    return [f'block "{odd[0]}"{more}: the thickness is {given}: the unit of length?']
 
 
 def _load_slips(assembly: Assembly) -> list[str]:

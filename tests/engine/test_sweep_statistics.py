@@ -26,6 +26,7 @@ def made_up(values: list[float | None], **columns: Any) -> pd.DataFrame:
             "finding": "collapses" if value is not None else "none",
             "multiplier": value,
             "judge_accepted": True,
+            "sentence": "found" if value is not None else "It was stopped at the limit of 2 s.",
         }
         for number, value in enumerate(values)
     ]

@@ -82,6 +82,36 @@ def test_sweep_tells_the_warnings_of_the_described_wall_once(tmp_path: Path):
     assert json.loads(planned.stdout)["warnings"] == [told]
 
 
+def test_sweep_tells_the_doubts_of_walls_as_they_vary_each_kind_once(tmp_path: Path):
+    """A friction of 5 and a thickness of a micrometre were swept without a word; a store says it too."""
+    path = wall(tmp_path, unit_weight=20, loads=PUSH)
+    values = ["--vary", "friction=0.5,3,5", "--vary", "thickness=1e-6,1"]
+    asked = ["sweep", path, *values, "--methods", "la-associated", "--json"]
+    told = json.loads(command(*asked, cwd=tmp_path).stdout)["warnings"]
+    assert len(told) == 2
+    assert told[0].startswith('block "block": the thickness is 1e-06 m: the unit of length?')
+    assert told[0].endswith("(and 2 more walls)")
+    assert told[1].startswith("friction is 3 in 1 of 1 interfaces: an angle?")
+    assert told[1].endswith("(and 3 more walls)")
+    again = command(*asked, cwd=tmp_path)
+    assert json.loads(again.stdout)["warnings"] == told
+    assert "block with friction = 0.5, thickness = 1e-06: " not in again.stdout
+    assert f"with friction = 0.5, thickness = 1e-06: {told[0]}" in again.stderr
+    assert "the thickness is 1e-06 m" in (tmp_path / json.loads(again.stdout)["report"]).read_text(encoding="utf-8")
+    assert json.loads(command(*asked, "--dry-run", cwd=tmp_path).stdout)["warnings"] == told
+
+
+def test_sweep_says_why_no_run_has_an_answer(tmp_path: Path):
+    """Of a wall without a support nine runs were refused, and the exit code was that of an answer."""
+    path = wall(tmp_path, unit_weight=20, loads=PUSH)
+    described = json.loads(path.read_text(encoding="utf-8"))
+    described["blocks"][0]["fixed"] = False
+    path.write_text(json.dumps(described), encoding="utf-8")
+    done = command("sweep", path, "--vary", "friction=0.5,3", "--methods", "la-associated", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "2 of 2 runs refused: blocks: no block is fixed" in done.stdout
+
+
 def test_a_wall_that_is_mended_by_what_varies_is_swept(tmp_path: Path):
     path = wall(tmp_path, unit_weight=20, loads=PUSH)
     described = json.loads(path.read_text(encoding="utf-8"))

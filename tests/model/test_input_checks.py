@@ -211,6 +211,13 @@ def test_a_wall_eight_kilometres_high_and_a_block_too_small_to_see_are_told():
     assert "crumb" in " ".join(warnings_of(data(blocks=[*data()["blocks"], crumb])))
 
 
+def test_a_thickness_in_another_unit_of_length_is_told():
+    told = warnings_of(data(units={"length": "mm", "force": "kN"}, thickness=0.5))
+    assert any('block "a": the thickness is 0.5 mm: the unit of length?' in text for text in told)
+    assert any("the thickness is 400 m" in text for text in warnings_of(data(thickness=400)))
+    assert not any("thickness" in text for text in warnings_of(data(thickness=0.01)))
+
+
 def test_a_plain_wall_and_one_that_never_slides_and_one_without_units_are_not_doubted():
     assert warnings_of(data()) == []
     assert warnings_of(data(friction=1000.0)) == []

@@ -19,9 +19,9 @@ from harness.engine.run import Limits, Run
 from harness.engine.sweep.paths import setting_of, with_values
 from harness.engine.sweep.study import MOST_RUNS, Distribution, Study
 from harness.model.assembly import Assembly
-from harness.model.build import build
+from harness.model.build import Built, build
 from harness.model.content import hash_of
-from harness.model.errors import InputError
+from harness.model.errors import InputError, without_numbers
 from harness.model.load_cases import load_cases_of
 from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall, validate, wall_json
@@ -54,19 +54,32 @@ class WallSource:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a person should hear about the wall as it is described; of one that cannot be built its runs tell."""
+        """What a person should hear about the wall as it is described; where it cannot be built, its runs say why."""
         try:
             return (*self.notes, *build(parse_wall(dict(self.data), self.name), self.name).warnings)
         except InputError:  # what varies may mend it
             return self.notes
 
 
-def warnings_of(sources: Iterable[WallSource]) -> dict[str, str]:
-    """The warnings of the walls of a study as they are described, each once, with the name of the first it is of."""
+def warnings_of(sources: Iterable[WallSource], runs: Sequence[SweepRun]) -> dict[str, str]:
+    """The warnings of the walls of a study as they are described and as they vary, with the name of the first each.
+
+    Of sentences that differ in their numbers alone the first is given, with the number of other walls as they vary.
+    """
     told: dict[str, str] = {}
     for source in sources:
         for sentence in source.warnings:
             told.setdefault(sentence, source.name)
+    kinds = {without_numbers(sentence) for sentence in told}
+    varied: dict[str, tuple[str, str, int]] = {}
+    for variant in {run.variant.content: run.variant for run in runs}.values():
+        for sentence in variant.doubts:
+            kind = without_numbers(sentence)
+            if kind not in kinds:
+                first, name, count = varied.get(kind, (sentence, variant.called, 0))
+                varied[kind] = (first, name, count + 1)
+    for sentence, name, count in varied.values():
+        told[f"{sentence} (and {count - 1:,} more walls)" if count > 1 else sentence] = name
     return told
 
 
@@ -105,8 +118,13 @@ class WallVariant:
         Raises:
             InputError: its data are no wall.
         """
+        return parse_wall(self.data, f"study {self.study}, {self.called}")
+
+    @property
+    def called(self) -> str:
+        """The name of the wall it comes from, with what was changed."""
         changed = ", ".join(f"{name} = {value}" for name, value in self.values.items())[:_MOST_TOLD]
-        return parse_wall(self.data, f"study {self.study}, {self.id} with {changed}")
+        return f"{self.id} with {changed}"
 
     @cached_property
     def content(self) -> str:
@@ -120,26 +138,34 @@ class WallVariant:
         Raises:
             InputError: its data are no wall, or one that cannot be built.
         """
-        return self.walls.assembly(self)
+        return self.walls.built(self).assembly
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What a person should hear about it; none of one that cannot be built, of which its runs say why."""
+        try:
+            return self.walls.built(self).warnings
+        except InputError:
+            return ()
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """None: `warnings_of` tells those of the wall as it is described once, not for each of thousands of runs."""
+        """None: `warnings_of` tells those of all walls once, not for each of thousands of runs."""
         return ()
 
 
 class _Walls:
-    """Assemblies of the walls of a study, the last few kept: runs on one wall follow each other."""
+    """The walls of a study as they are built, the last few kept: runs on one wall follow each other."""
 
     def __init__(self, most: int = 64) -> None:
         self._most = most
-        self._kept: OrderedDict[WallVariant, Assembly] = OrderedDict()
+        self._kept: OrderedDict[WallVariant, Built] = OrderedDict()
 
-    def assembly(self, variant: WallVariant) -> Assembly:
-        """The assembly of a variant, see `Variant.assembly`."""
+    def built(self, variant: WallVariant) -> Built:
+        """A variant as it is built; raises as `WallVariant.assembly`."""
         found = self._kept.get(variant)
         if found is None:
-            found = self._kept[variant] = build(variant.wall, variant.id).assembly
+            found = self._kept[variant] = build(variant.wall, variant.id)
             if len(self._kept) > self._most:
                 self._kept.popitem(last=False)
         return found

@@ -11,6 +11,8 @@ import pandas as pd
 
 from harness.engine.sweep import statistics
 from harness.engine.sweep.study import Study, Whole
+from harness.model.errors import without_numbers
+from harness.model.method import Status
 
 _NO_SALIB = "SALib is not installed, so no sensitivities are reported: pip install 'drystone[sensitivity]'"
 
@@ -94,6 +96,15 @@ def _taken_over(rows: pd.DataFrame, place: list[str]) -> tuple[pd.DataFrame, str
     )
 
 
+def _unanswered(rows: pd.DataFrame, most: int = 6) -> list[str]:
+    """Why runs gave no answer: of sentences that differ in their numbers alone the first, and how many runs say so."""
+    kinds: dict[str, list[str]] = {}
+    for status, sentence in rows.loc[rows["status"] != str(Status.OK), ["status", "sentence"]].itertuples(index=False):
+        kinds.setdefault(without_numbers(sentence), []).append(f"{status.replace('_', ' ')}: {sentence}")
+    said = [f"{len(alike)} of {len(rows)} runs {alike[0]}" for alike in kinds.values()]
+    return said[:most] + [f"and {len(said) - most} reasons more, in the rows"] * (len(said) > most)
+
+
 def summarise(study: Study, rows: pd.DataFrame) -> GridSummary:
     """The statistics that a study's rows allow."""
     groups = ["case", "method", *grid_of(study)]
@@ -107,6 +118,7 @@ def summarise(study: Study, rows: pd.DataFrame) -> GridSummary:
     lost = len(rows) - len(counted)
     if lost:
         remarks.append(f"{lost} of {len(rows)} runs gave no multiplier, or a rejected one; they are in the rows.")
+    remarks += _unanswered(rows)
     unjudged = int(counted["judge_accepted"].isna().sum())
     if unjudged:
         remarks.append(f"{unjudged} of {len(rows)} runs count although their answers are not judged.")
