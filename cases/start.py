@@ -327,6 +327,8 @@ def matera(
     return matera_wall(masonry, "Wall of Matera under half a vault")
 
 
+MAY_BE_ZERO = ("friction", "openings", "seed")
+"""Numbers of walls that may be zero; all others are lengths and counts above it."""
 STARTS: dict[str, Callable[..., Wall]] = {
     "running-bond": running_bond,
     "ashlar": ashlar,

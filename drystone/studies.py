@@ -23,7 +23,7 @@ from harness.engine.sweep.running import Row
 from harness.engine.sweep.running import sweep as running
 from harness.engine.sweep.study import Study, read_study
 from harness.model.case import shipped_cases
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean
 from harness.model.method_registry import load_method
 from harness.model.reading import wall_json
 
@@ -218,7 +218,8 @@ def shipped_study(name: str, element: str) -> Path:
     """
     known = shipped_studies()
     if name not in known:
-        raise InputError(f'no study is called "{name}"', f"There are: {', '.join(known)}", element)
+        there = f"{did_you_mean(name, known)} There are: {', '.join(known)}".strip()
+        raise InputError(f'no study is called "{name}"', there, element)
     return known[name]
 
 

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
 
 from harness import formats
 from harness.engine.plan import find_cases
 from harness.model import reading
 from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile, case_folders, case_of_wall, id_of, shipped_cases
-from harness.model.errors import InputError, did_you_mean
+from harness.model.errors import InputError, did_you_mean, raise_faults
 from harness.model.load_cases import load_cases_of
 from harness.model.wall import Wall as Description
 from harness.model.writing import write_whole
@@ -51,8 +54,8 @@ class Wall:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about what is doubtful in it."""
-        return self.case.warnings
+        """Sentences about what is doubtful in it, under any of its load cases."""
+        return tuple(dict.fromkeys(sentence for each in load_cases_of(self.case) for sentence in each.warnings))
 
     @property
     def units(self) -> dict[str, str]:
@@ -180,8 +183,29 @@ def new_wall(kind: str, **numbers: Any) -> Wall:
     if unknown := [name for name in numbers if name not in known]:
         remedy = f"{did_you_mean(unknown[0], known)} There are: {', '.join(known)}".strip()
         raise InputError(f'it has no number "{unknown[0]}"', remedy, kind)
+    return build_wall(started(STARTS[kind], kind, numbers), kind)
+
+
+def started(maker: Callable[..., Description], kind: str, numbers: Mapping[str, Any]) -> Description:
+    """What a maker of walls of a kind makes of numbers.
+
+    Raises:
+        InputError: numbers of which no wall can be made.
+    """
+    from cases.start import MAY_BE_ZERO
+
+    odd = [
+        InputError(f"it should be {'at least' if name in MAY_BE_ZERO else 'above'} 0 (given: {value})", "", name)
+        for name, value in numbers.items()
+        if isinstance(value, int | float)
+        and not (math.isfinite(value) and (value > 0 or (value == 0 and name in MAY_BE_ZERO)))
+    ]
+    raise_faults(odd, kind)
     try:
-        return build_wall(STARTS[kind](**numbers), kind)
+        return maker(**numbers)
+    except ValidationError as error:
+        reading.raise_found(error, Description, {}, kind)
+        raise AssertionError("a validation error has faults") from None
     except (TypeError, ValueError) as error:
         raise InputError(f"the wall cannot be made ({error})", "Give other numbers", kind) from None
 

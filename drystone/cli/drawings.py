@@ -35,6 +35,7 @@ from harness.model.reading import parse_wall, read_document, wall_json
 from harness.model.repair import repair as mend
 from harness.model.salvage import salvaged
 from harness.model.writing import write_whole
+from reports.labels.numbers import count
 
 
 @click.command()
@@ -72,7 +73,7 @@ def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...], r
             | {"tolerances": [asdict(plateau) for plateau in plateaus]}
         )
     else:
-        say(f"{joints} joints are found" if joints is not None else f"it cannot be built; errors: {len(looked.faults)}")
+        say(_found(joints) if joints is not None else f"it cannot be built; errors: {len(looked.faults)}")
         _list_marks(looked, advice[0] if advice else None)
         if plateaus:
             if looked.wall.load_case_fields:
@@ -93,6 +94,10 @@ def validate(case: str, method: str, as_json: bool, folders: tuple[Path, ...], r
                 f"say {saying(advice[0])}"
             )
     sys.exit(INPUT_ERROR if looked.faults else 0)
+
+
+def _found(joints: int) -> str:
+    return f"{count(joints, 'joint')} {'is' if joints == 1 else 'are'} found"
 
 
 def looked_at(case: str, folders: tuple[Path, ...], load_case: str | None = None) -> Inspection:
@@ -181,9 +186,9 @@ def repair(wall: Path, output: Path, snap: float, as_json: bool) -> None:
         terminal.print_rows(rows)
     for left, kept in mended.doubles:
         say(f'left out: block "{left}", which repeats the outline of "{kept}"')
-    for block, count in mended.splits:
-        say(f'block "{block}": {count} vertices added to its faces at the ends of others')
-    say(f"{len(mended.moves)} vertices moved, {furthest:.3g} at most; {built.assembly.n_interfaces} joints are found")
+    for block, added in mended.splits:
+        say(f'block "{block}": {added} vertices added to its faces at the ends of others')
+    say(f"{len(mended.moves)} vertices moved, {furthest:.3g} at most; {_found(built.assembly.n_interfaces)}")
     for warning in built.warnings:
         say(f"doubtful: {warning}")
 

@@ -26,6 +26,7 @@ from drystone.cli.options import (
     warn,
 )
 from drystone.cli.settings import settings_of
+from drystone.walls import started
 from harness.engine import pipeline
 from harness.engine.plan import check_methods, check_taken, find_cases
 from harness.engine.run import Limits, Run
@@ -137,7 +138,7 @@ def export(
 
 def _settings(method: str, given: tuple[str, ...], output: Path) -> dict[str, Any]:
     """Settings of the method that answers; for a series with those that make it keep one, if it can."""
-    check_methods((method,))
+    check_methods((method,), "--method")
     chosen = settings_of(method, given)
     if output.suffix.lower() == ".pvd" and LOAD_STEPS in load_method(method).Settings.model_fields:
         return {LOAD_STEPS: KEPT} | chosen
@@ -181,11 +182,7 @@ def _kind(name: str, maker: Callable[..., Wall]) -> click.Command:
                 key: click.prompt(key.replace("_", " "), default=item.default, type=hints[key])
                 for key, item in numbers.items()
             }
-        try:
-            made = maker(**given)
-        except ValueError as error:
-            raise InputError(f"the wall cannot be made ({error})", "Give other numbers", name) from None
-        _write(wall_json(made), output)
+        _write(wall_json(started(maker, name, given)), output)
 
     options: list[click.Parameter] = [
         click.Option([f"--{key.replace('_', '-')}", key], type=hints[key], help=f"[default: {item.default}]")

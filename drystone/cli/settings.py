@@ -23,7 +23,9 @@ def settings_of(method: str, pairs: tuple[str, ...]) -> dict[str, Any]:
     known = load_method(method).Settings.model_fields
     for pair in pairs:
         name, equals, text = pair.partition("=")
-        if not equals or name not in known:
+        if not equals and name in known:
+            raise InputError(f'"{pair}" gives no value', "Give NAME=VALUE", "--set")
+        if name not in known:
             names = f"Give NAME=VALUE with a name of: {', '.join(known) or '(it has none)'}"
             raise InputError(
                 f'"{pair}" is no setting of {method}', f"{did_you_mean(name, known)} {names}".strip(), "--set"

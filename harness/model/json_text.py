@@ -12,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 from typing import IO, Any
 
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean
 
 LARGEST_FILE = 256 * 2**20
 """Bytes that are read from one file at most: 100,000 blocks with their interfaces written out are about 150 MB."""
@@ -72,7 +72,7 @@ def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
                 raise InputError("it is not a regular file", "Write its content to a file first", source=source)
             content = _up_to(limit + 1, file) if status.st_size <= limit else b""
     except FileNotFoundError:
-        raise InputError("there is no such file", "Check the path", source=source) from None
+        raise InputError("there is no such file", _near(path) or "Check the path", source=source) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise InputError(f"it cannot be read ({reason})", "Give a file that you may read", source=source) from None
@@ -92,6 +92,14 @@ def _up_to(most: int, file: IO[bytes]) -> bytes:
     while len(content) < most and (part := file.read(min(most - len(content), 2**20))):
         content += part
     return bytes(content)
+
+
+def _near(path: Path) -> str:
+    """The question whether a file of the same folder was meant; empty where none is near."""
+    try:
+        return did_you_mean(path.name, sorted(each.name for each in path.parent.iterdir()))
+    except OSError:
+        return ""
 
 
 def _without_waiting(path: str, flags: int) -> int:

@@ -61,18 +61,36 @@ def validate(
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        found = error.errors(include_url=False)
-        beyond = max(0, len(found) - MOST_WORDED)
-        found = found[:MOST_WORDED]
-        faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]]
-        if not beyond:
-            faults += more(data)
-        faults = faults or [_fault(model, data, fault, source) for fault in found]
-        first_of_place: dict[str, InputError] = {}
-        for each in faults:
-            first_of_place.setdefault(each.element, each)
-        raise_faults(sorted(first_of_place.values(), key=lambda fault: _order(fault.element, data)), source, beyond)
+        raise_found(error, model, data, source, more)
         raise AssertionError("a validation error has faults") from None
+
+
+def raise_found(
+    error: ValidationError,
+    model: type[BaseModel],
+    data: Any,
+    source: str,
+    more: Callable[[Any], list[InputError]] = lambda data: [],
+) -> None:
+    """Raise what the validating library found, in words.
+
+    Args:
+        error: its own; model, data, source, more: as of `validate`.
+
+    Raises:
+        InputError: as `validate`.
+    """
+    found = error.errors(include_url=False)
+    beyond = max(0, len(found) - MOST_WORDED)
+    found = found[:MOST_WORDED]
+    faults = [_fault(model, data, fault, source) for fault in found if fault["loc"]]
+    if not beyond:
+        faults += more(data)
+    faults = faults or [_fault(model, data, fault, source) for fault in found]
+    first_of_place: dict[str, InputError] = {}
+    for each in faults:
+        first_of_place.setdefault(each.element, each)
+    raise_faults(sorted(first_of_place.values(), key=lambda fault: _order(fault.element, data)), source, beyond)
 
 
 def _order(element: str, data: Any) -> tuple[int, ...]:

@@ -84,13 +84,20 @@ def joint_lines(frame: Frame, assembly: Assembly) -> list[Shape]:
 
 
 def _labels(frame: Frame, assembly: Assembly) -> list[Shape]:
-    """In each block its id where all ids are short, its number otherwise, as large as it fits."""
+    """In each block its id where that is short, and its number where no id is, as large as it fits.
+
+    A number beside ids would be taken for one.
+    """
     if assembly.n_blocks > _LABELLED_BLOCKS:
         return []
-    short = all(len(name) <= 5 for name in assembly.block_ids)
-    names = assembly.block_ids if short else [str(k + 1) for k in range(assembly.n_blocks)]
-    sizes = [_letters(polygon * frame.scale, len(name)) for name, polygon in zip(names, assembly.polygons, strict=True)]
-    read = np.median(sizes) >= _READ  # on the page most ids or none, not those of the few blocks that lie level
+    names = [name if len(name) <= 5 else "" for name in assembly.block_ids]
+    if not any(names):
+        names = [str(k + 1) for k in range(assembly.n_blocks)]
+    sizes = [
+        _letters(polygon * frame.scale, len(name)) if name else 0.0
+        for name, polygon in zip(names, assembly.polygons, strict=True)
+    ]
+    read = np.median([size for size in sizes if size]) >= _READ  # most or none, not those of blocks that lie level
     drawn: list[Shape] = []
     for k, (name, size) in enumerate(zip(names, sizes, strict=True)):
         if size >= 44.0:

@@ -298,7 +298,10 @@ def findings(run: ComparisonRun) -> str:
     gates = [gate for item in run.cases for gate in item.gates if gate.passed is not None]
     if gates:
         passed = sum(bool(gate.passed) for gate in gates)
-        sentences.append(f"Of {numbers.count(len(gates), 'statement')} of theory that could be tested, {passed} hold.")
+        hold = "holds" if passed == 1 else "hold"
+        sentences.append(
+            f"Of {numbers.count(len(gates), 'statement')} of theory that could be tested, {passed} {hold}."
+        )
     return " ".join(sentences)
 
 

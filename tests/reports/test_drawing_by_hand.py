@@ -11,6 +11,7 @@ from typing import TypeVar
 import numpy as np
 import pytest
 
+from drystone.walls import build_wall
 from harness.model.case import Case
 from harness.model.result import Result
 from reports.drawing.display_list import Arrows, Circles, DisplayList, Group, Lines, Polygons, Shape, Text
@@ -278,3 +279,12 @@ def test_displaced_blocks_are_drawn_where_they_are():
     held, moves = shapes_of(displaced_drawing(case.assembly, "the block", moved), Polygons)
     close(held.outlines, np.array([LEFT, RIGHT]) + np.array([1000, 2000]))
     close(moves.outlines, np.array([BLOCK]) + np.array([1000, 2000]))
+
+
+def test_a_number_never_stands_beside_ids_where_it_would_be_taken_for_one():
+    """The base of a stack is its first block: numbered, the block "1" was drawn as 2 as soon as another id was long."""
+    stack = {"type": "stack", "width": 1, "height": 0.5, "count": 2}
+    building = {"id": "building", "polygon": [[-2, 0], [-1, 0], [-1, 1], [-2, 1]], "fixed": True}
+    wall = build_wall({"format": "wall/1", "unit_weight": 20, "friction": 0.5, "pattern": stack, "blocks": [building]})
+    told = {item.title: item.text for item in shapes_of(wall_drawing(wall.case), Text) if item.title}
+    assert told == {"block base": "base", "block 1": "1", "block 2": "2"}
