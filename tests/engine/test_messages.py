@@ -37,6 +37,7 @@ def wall(tmp_path: Path) -> Path:
         (("factor", "wall.json", "--share", "half"), "'half' is not a number."),
         (("export", "wall.json", "--method", "lla", "-o", "a.vtu"), '--method: no method is called "lla"'),
         (("new", "stack", "--count", "1.5"), "'1.5' is not a whole number."),
+        (("run", "la", "wall.json", "--seconds", "x"), "'x' is not a number."),
         (("new", "ashlar", "--length", "-2"), "ashlar: length: it should be above 0 (given: -2.0)"),
         (("new", "ashlar", "--course-height", "0"), "ashlar: course_height: it should be above 0"),
         (("new", "two-leaf", "--through", "0"), "two-leaf: through: it should be above 0"),
