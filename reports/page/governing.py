@@ -134,7 +134,7 @@ def _collapse(item: CaseResults) -> float | None:
 
 
 def _name(item: CaseResults) -> str:
-    return item.case.load_in_words or direction_in_words(item.case)
+    return item.case.load_case or direction_in_words(item.case)
 
 
 def _way(item: CaseResults, *, governs: bool) -> Way:
