@@ -332,6 +332,15 @@ def write_output(path: Path | None, table: Callable[[], str], figure: Callable[[
     save(figure, path)
 
 
+_IN_WORDS = {
+    "a valid float range": "a number",
+    "a valid integer range": "a whole number",
+    "a valid float": "a number",
+    "a valid integer": "a whole number",
+}
+"""Kinds of values as click calls them, and as users do."""
+
+
 class AskingGroup(click.Group):
     """A group that answers an unknown command with the one that is near, if there is one."""
 
@@ -344,3 +353,13 @@ class AskingGroup(click.Group):
         except click.UsageError as error:
             meant = did_you_mean(args[0], self.list_commands(ctx)) if args else ""
             raise click.UsageError(f"{error.message} {meant}".strip(), error.ctx or ctx) from None
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """As of click, with the kind of value that was expected in words of users."""
+        try:
+            return super().invoke(ctx)
+        except click.UsageError as error:
+            text = error.format_message()
+            for theirs, ours in _IN_WORDS.items():
+                text = text.replace(theirs, ours)
+            raise click.UsageError(text, error.ctx or ctx) from None
