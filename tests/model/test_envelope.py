@@ -166,3 +166,16 @@ def test_the_multiplier_with_strength_decides_where_it_is_the_lower_one(
     assert "For safety use 0.45000 (la), below the residual multiplier" in page
     (way,) = governing(compared.run.cases).ways
     assert (way.residual, way.governs) == ("0.50000 (la)", True)
+
+
+@pytest.mark.parametrize(("strength", "told"), [({}, False), ({"compressive_strength": 60.0}, True)])
+def test_a_page_explains_the_columns_that_it_has_of_the_one_joint_of_a_pier(
+    strength: dict[str, float], told: bool, tmp_path: Path
+):
+    data: dict[str, Any] = {"format": "wall/1", "unit_weight": 20.0, "friction": 0.9}
+    data["pattern"] = {"type": "stack", "width": 0.4, "height": 1.0, "count": 1}
+    data["loads"] = {"live": {"body": [{"per_weight": [1, 0]}]}}
+    wall = drystone.build_wall(data | strength, "pier")
+    page = drystone.compare(wall, ["la"], isolated=False).report(tmp_path / "report.html").read_text("utf-8")
+    assert "by la: the joint.</p>" in page
+    assert ("Crushing is the edge stress over the compressive strength." in page) == told
