@@ -11,10 +11,10 @@ from typing import Any, get_args, get_type_hints
 import click
 
 from drystone.cli import terminal
+from drystone.cli.groups import AskingGroup
 from drystone.cli.options import (
     INPUT_ERROR,
     OUTPUT,
-    AskingGroup,
     case_argument,
     cases_option,
     catching,

@@ -10,7 +10,7 @@ import os
 
 import click
 
-from drystone.cli.options import AskingGroup
+from drystone.cli.groups import AskingGroup
 from harness import formats
 from harness.engine.threads import pin
 

@@ -10,7 +10,8 @@ from typing import Any, get_args
 
 import click
 
-from drystone.cli.options import AskingGroup, catching, say
+from drystone.cli.groups import AskingGroup
+from drystone.cli.options import catching, say
 from harness.model.errors import InputError
 from harness.model.foreign.description import NAME, Feature
 from harness.model.foreign.program_method import description_of, method_of

@@ -19,7 +19,7 @@ from click.shell_completion import CompletionItem
 
 from harness.engine.run import LONGEST, MOST_MEMORY, Analysed, Limits
 from harness.model.case import Case, case_folders, shipped_cases
-from harness.model.errors import InputError, did_you_mean, visible
+from harness.model.errors import InputError, visible
 from harness.model.fields import LARGEST
 from harness.model.json_text import MOST_SHOWN
 from harness.model.live_load import both_signs as signs_of
@@ -330,36 +330,3 @@ def write_output(path: Path | None, table: Callable[[], str], figure: Callable[[
     from reports.figures.figures import save
 
     save(figure, path)
-
-
-_IN_WORDS = {
-    "a valid float range": "a number",
-    "a valid integer range": "a whole number",
-    "a valid float": "a number",
-    "a valid integer": "a whole number",
-}
-"""Kinds of values as click calls them, and as users do."""
-
-
-class AskingGroup(click.Group):
-    """A group that answers an unknown command with the one that is near, if there is one."""
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """As of click, with the question which command was meant."""
-        try:
-            return super().resolve_command(ctx, args)
-        except click.UsageError as error:
-            meant = did_you_mean(args[0], self.list_commands(ctx)) if args else ""
-            raise click.UsageError(f"{error.message} {meant}".strip(), error.ctx or ctx) from None
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """As of click, with the kind of value that was expected in words of users."""
-        try:
-            return super().invoke(ctx)
-        except click.UsageError as error:
-            text = error.format_message()
-            for theirs, ours in _IN_WORDS.items():
-                text = text.replace(theirs, ours)
-            raise click.UsageError(text, error.ctx or ctx) from None

@@ -218,7 +218,7 @@ def test_a_brittle_wall_has_a_key_of_its_own():
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        ({"after": "brittle", "cohesion": 1.0}, "after: .*'plastic' or 'residual'"),
+        ({"after": "brittle", "cohesion": 1.0}, 'after: .*"plastic" or "residual"'),
         ({"after": "residual"}, "neither cohesion nor tensile strength"),
         ({"after": "residual", "cohesion": 0.0}, "neither cohesion nor tensile strength"),
         ({"after": "residual", "friction": {"default": 0.5}}, "friction by rules holds"),

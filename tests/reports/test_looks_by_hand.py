@@ -153,8 +153,10 @@ def test_names_of_blocks_are_their_ids_where_these_are_short_and_numbers_elsewhe
 
     assert "1.1" in shown("")
     assert "a1.1" in shown("a"), "the ground is called abase, in five letters"
-    assert "ab1.1" not in shown("ab")
-    assert "2" in shown("ab")
+    assert "ab1.1" in shown("ab")
+    assert not {"abbase", "1"} & shown("ab"), "the ground has no name where others have their ids"
+    assert "abc1.1" not in shown("abc")
+    assert "2" in shown("abc")
     assert wall_parts(wall_case(running_bond(13, 11))) != []
     large = wall_case(running_bond(14, 11))
     assert large.assembly.n_blocks > 160
