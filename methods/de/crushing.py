@@ -31,14 +31,11 @@ class HeldTangents:
     Attributes:
         tangents: as they are added.
         settled: relative change of the multiplier between two brackets: a fifth of the accuracy that is stated.
-        turned: difference of a rate from that of joints that turn about the edges of their strips, beside the largest,
-            above which the motion is another: tangents at the forces of the bracket before are up to half of it apart.
         rounds: of brackets, at most.
     """
 
     tangents: TangentTolerances = TangentTolerances()
     settled: float = 1e-3
-    turned: float = 0.1
     rounds: int = 12
 
 
@@ -66,7 +63,7 @@ def held_within_tangents(
             held = held_forces(assembly, answer.forces, answer.forces_multiplier or 0.0)
             if held is not None:
                 moved = _Motion(assembly, wall, tangents, of_wall)
-                return _with_held(answer, held, moved, options.turned, rounds)
+                return _with_held(answer, held, moved, rounds)
         tangents, before = further or tangents, multiplier
     sentence = f"the multiplier did not settle over {options.rounds} walls within tangents of their stress blocks"
     return not_found(assembly, answer, sentence)
@@ -103,13 +100,13 @@ class _Motion:
         return None if found is None else (*found, forces)
 
 
-def _with_held(answer: Answer, held: FloatArray, moved: _Motion, most: float, rounds: int) -> Answer:
+def _with_held(answer: Answer, held: FloatArray, moved: _Motion, rounds: int) -> Answer:
     """The answer with forces (m, 3) held within the stress blocks, and with the motion that these allow."""
     details = answer.details | {"searches": rounds}
     if answer.mechanism is None or MOVING_FORCES not in details:
         return replace(answer, forces=held, details=details)
     found = moved.of_blocks()
-    if found is None or (print("far", found[1]) or found[1] > 9.0):
+    if found is None:
         return no_answer(
             answer, "the wall within tangents of its stress blocks moves as one whose joints crush does not"
         )
