@@ -258,9 +258,8 @@ def _thickness_slips(wall: Wall, blocks: list[Block]) -> list[str]:
     odd = [name for name, given in thickness.items() if not _THICKNESSES[0] <= given * metre <= _THICKNESSES[1]]
     if not odd:
         return []
-    more = f" and {len(odd) - 1} more" if len(odd) > 1 else ""
-    given = f"{thickness[odd[0]]:g} {wall.units.length}"
-    return [f'block "{odd[0]}"{more}: the thickness is {given}: the unit of length?']
+    given, named = f"{thickness[odd[0]]:g} {wall.units.length}", first_few([f'"{name}"' for name in odd], 1)
+    return [f"block {named}: the thickness is {given}: the unit of length?"]
 
 
 def _load_slips(assembly: Assembly) -> list[str]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
 from methods.numerics.claims import growing_forces, no_answer
@@ -21,7 +21,7 @@ from methods.numerics.crushing_claims import ends_at, not_found
 from methods.numerics.joints_in_series import without_limits
 from methods.numerics.pressed_state import held_forces, nearest_motion
 from methods.numerics.stress_blocks import pressed_shares
-from methods.numerics.tangent_search import Tangents, TangentTolerances, first_tangents
+from methods.numerics.tangent_search import Tangents, TangentTolerances, first_tangents, greatest_of_statics
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,8 @@ def held_within_tangents(
     assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldTangents = HeldTangents()
 ) -> Answer:
     """The answer for a component whose joints crush; `solve` answers for walls that do not and have further limits."""
-    tangents, before = first_tangents(assembly), np.nan
+    greatest = greatest_of_statics(assembly)
+    tangents, before = first_tangents(assembly, greatest, options.tangents), np.nan
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
         wall, limits = tangents.wall(assembly)
@@ -52,7 +53,7 @@ def held_within_tangents(
         if answer.finding is Finding.UNBOUNDED and growing_forces(assembly) is None:
             tangents = tangents.where_all_is_pressed(assembly, options.tangents)
             continue
-        ends = ends_at(assembly, answer, len(limits.joint))
+        ends = ends_at(answer, len(limits.joint))
         if ends is not None:
             return ends
         assert answer.forces is not None
@@ -62,54 +63,31 @@ def held_within_tangents(
         if answer.finding is Finding.STANDS or settled or further is None:
             held = held_forces(assembly, answer.forces, answer.forces_multiplier or 0.0)
             if held is not None:
-                moved = _Motion(assembly, wall, tangents, of_wall)
-                return _with_held(answer, held, moved, rounds)
+                answer = replace(answer, forces=held, details=answer.details | {"searches": rounds})
+                return _with_motion(assembly, wall, tangents, of_wall, answer)
         tangents, before = further or tangents, multiplier
     sentence = f"the multiplier did not settle over {options.rounds} walls within tangents of their stress blocks"
-    return not_found(assembly, answer, sentence)
+    return not_found(answer, sentence, greatest.upper)
 
 
-@dataclass(frozen=True, eq=False)
-class _Motion:
-    """The motion that was measured of a wall within tangents.
+def _with_motion(assembly: Assembly, wall: Assembly, tangents: Tangents, of_wall: Answer, answer: Answer) -> Answer:
+    """The answer with the motion, nearest to that measured, of joints that turn about the edges of their strips.
 
-    Attributes:
-        assembly: whose joints crush; wall: in its place; tangents: of the stress blocks; answer: for the wall.
+    Args:
+        assembly: whose joints crush; wall: that within these tangents; of_wall: the answer for it, as it was measured;
+        answer: that for the wall whose joints crush.
     """
-
-    assembly: Assembly
-    wall: Assembly
-    tangents: Tangents
-    answer: Answer
-
-    def of_blocks(self) -> tuple[FloatArray, float, FloatArray] | None:
-        """The nearest motion (n, 3) of joints that turn about the edges of their strips, how far it is, and the forces.
-
-        How far is the difference of a rate beside the largest; the forces (m, 3) are measured with the motion.
-        """
-        assert self.answer.mechanism is not None
-        borne = np.asarray(self.answer.details[MOVING_FORCES])
-        strains = (self.wall.kinematic_matrix @ self.answer.mechanism[self.wall.free].ravel()).reshape(-1, 3)
-        rates = self.wall.law.rates(strains)
-        # An end opens that bears less than it opens, relative to a block and to the fastest rate; the rest is noise.
-        bears = self.wall.law.slacks(borne)[:, :2] * self.wall.n_free / self.wall.force_scale
-        rates[:, :2] = np.where(bears <= rates[:, :2] / rates.max(), rates[:, :2], 0.0)
-        forces = borne[: self.assembly.n_interfaces]
-        share = np.clip(pressed_shares(self.assembly, forces), 0.0, 1.0)
-        found = nearest_motion(self.assembly, share, self.tangents.rates_of_joints(rates))
-        return None if found is None else (*found, forces)
-
-
-def _with_held(answer: Answer, held: FloatArray, moved: _Motion, rounds: int) -> Answer:
-    """The answer with forces (m, 3) held within the stress blocks, and with the motion that these allow."""
-    details = answer.details | {"searches": rounds}
-    if answer.mechanism is None or MOVING_FORCES not in details:
-        return replace(answer, forces=held, details=details)
-    found = moved.of_blocks()
-    if found is None:
+    if of_wall.mechanism is None or MOVING_FORCES not in of_wall.details:
+        return answer
+    borne = np.asarray(of_wall.details[MOVING_FORCES])
+    rates = wall.law.rates((wall.kinematic_matrix @ of_wall.mechanism[wall.free].ravel()).reshape(-1, 3))
+    # An end opens that bears less than it opens, relative to a block and to the fastest rate; the rest is noise.
+    bears = wall.law.slacks(borne)[:, :2] * wall.n_free / wall.force_scale
+    rates[:, :2] = np.where(bears <= rates[:, :2] / rates.max(), rates[:, :2], 0.0)
+    share = np.clip(pressed_shares(assembly, borne[: assembly.n_interfaces]), 0.0, 1.0)
+    motion = nearest_motion(assembly, share, tangents.rates_of_joints(rates))
+    if motion is None:
         return no_answer(
             answer, "the wall within tangents of its stress blocks moves as one whose joints crush does not"
         )
-    motion, _, forces = found
-    details[MOVING_FORCES] = forces.tolist()
-    return replace(answer, forces=held, mechanism=motion, details=details)
+    return replace(answer, mechanism=motion)

@@ -49,7 +49,6 @@ class DampedHolds(Solver):
 
     def _of_component(self, assembly: Assembly, settings: SweepSettings) -> Answer:
         if assembly.crushes:
-            # A wall within tangents may bear a dead load that crushes this one, and a live load may lift it again.
             falls = falls_by_statics(assembly)
             return falls or held_within_tangents(assembly, lambda wall: self._of_component(wall, settings))
 

@@ -87,7 +87,6 @@ class GapSprings(Solver):
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.crushes:
-            # A wall within tangents may bear a dead load that crushes this one, and a live load may lift it again.
             return falls_by_statics(assembly) or by_tangents(assembly, lambda wall: self._of_component(wall, settings))
         answer = self._solve(build_model(assembly, settings, settings.friction_cap), settings)
         if answer.finding != Finding.COLLAPSES and float(assembly.friction.max(initial=0.0)) > settings.friction_cap:

@@ -19,6 +19,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.breakpoints import of_whole_wall
+from harness.model.details import MOVING_FORCES
 from harness.model.load_steps import without_series
 from harness.model.method import Answer
 
@@ -98,6 +99,8 @@ def without_limits(answer: Answer, assembly: Assembly, limits: FurtherLimits) ->
     details = without_series(answer.details, n, limits.joint)
     if "moving_blocks" in details:
         details = details | {"moving_blocks": [b for b in details["moving_blocks"] if b in assembly.block_ids]}
+    if MOVING_FORCES in details:
+        details = details | {MOVING_FORCES: details[MOVING_FORCES][:m]}
     return replace(
         answer,
         forces=None if answer.forces is None else answer.forces[:m],

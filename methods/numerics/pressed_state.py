@@ -150,11 +150,10 @@ def _nearest_forces(
     return vertex.value[: 3 * m].reshape(-1, 3) * unit, float(vertex.value[3 * m]) * assembly.load_unit
 
 
-def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> tuple[FloatArray, float] | None:
+def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> FloatArray | None:
     """The motion (n, 3) of joints that press shares (m,) nearest to rates (m, 4), along rows that move in these alone.
 
-    Returns:
-        The motion, and the largest difference of a rate beside the largest rate; None where the programme fails.
+    None where the programme fails.
     """
     from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -177,7 +176,7 @@ def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> 
         return None
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (value[: 3 * n] * column).reshape(-1, 3)
-    return mechanism, float(abs(value[3 * n : 3 * n + 4 * m] - target).max())
+    return mechanism
 
 
 def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> FloatArray | None:

@@ -25,7 +25,7 @@ from methods.numerics.claims import growing_forces
 from methods.numerics.crushing_claims import ends_at, not_found
 from methods.numerics.joints_in_series import FurtherLimits, in_series, without_limits
 from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
-from methods.numerics.stress_blocks import greatest_by_chords, pressed_shares
+from methods.numerics.stress_blocks import BlockLimit, greatest_by_chords, pressed_shares
 
 Solve = Callable[[Assembly], Answer]
 
@@ -156,8 +156,9 @@ class Tangents:
 
 def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, found: list[Answer]) -> Answer:
     """As `by_tangents`, in as many rounds as there may be; `found` gets the answers with exact states."""
-    tangents = first_tangents(assembly, options)
-    answer = not_found_yet = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
+    greatest = greatest_of_statics(assembly)
+    tangents, ended = first_tangents(assembly, greatest, options), ""
+    answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
     for rounds in range(1, options.rounds + 1):
         wall, limits = tangents.wall(assembly)
         of_wall = solve(wall)
@@ -165,11 +166,11 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         if answer.finding is Finding.UNBOUNDED and growing_forces(assembly) is None:
             tangents = tangents.where_all_is_pressed(assembly, options)
             continue
-        ends = ends_at(assembly, answer, len(limits.joint))
+        ends = ends_at(answer, len(limits.joint))
         if ends is not None:
             if answer.finding in (Finding.UNBOUNDED, Finding.FALLS) or answer.status is Status.REFUSED:
                 return ends
-            not_found_yet = ends
+            ended = f" ({ends.sentence})"
             break
         assert answer.forces is not None
         hinge = None if answer.mechanism is None else _hinge_shares(assembly, answer.mechanism)
@@ -192,22 +193,25 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         return _least(found)
     if answer.finding is Finding.STANDS:
         return answer
-    ended = f" ({not_found_yet.sentence})" if not_found_yet.sentence else ""
-    return not_found(
-        assembly,
-        answer,
+    sentence = (
         f"no collapse state of the joints that crush is known; {rounds} rounds of a search within tangents of their "
-        f"stress blocks led to none{ended}",
+        f"stress blocks led to none{ended}"
     )
+    return not_found(answer, sentence, greatest.upper)
 
 
-def first_tangents(assembly: Assembly, options: TangentTolerances = TangentTolerances()) -> Tangents:
+def greatest_of_statics(assembly: Assembly) -> BlockLimit:
+    """The greatest multiplier of statics; unknown where there is no live load."""
+    if not assembly.has_live_load:
+        return BlockLimit("unknown")
+    return greatest_by_chords(assembly, assembly.dead, assembly.live)
+
+
+def first_tangents(
+    assembly: Assembly, greatest: BlockLimit, options: TangentTolerances = TangentTolerances()
+) -> Tangents:
     """Tangents at the forces of the greatest multiplier of statics, each at the end that these are nearer to."""
-    forces = None
-    if assembly.has_live_load:
-        forces = greatest_by_chords(assembly, assembly.dead, assembly.live).forces
-    if forces is None:
-        forces = np.zeros((assembly.n_interfaces, 3))
+    forces = np.zeros((assembly.n_interfaces, 3)) if greatest.forces is None else greatest.forces
     share = np.minimum(pressed_shares(assembly, forces), 1.0)
     return Tangents.at(share, (share > options.pressed)[:, None] & (forces[:, :2] <= forces[:, 1::-1]))
 

@@ -124,7 +124,7 @@ def test_wrong_answers_are_rejected(change: str):
         rates = wall.law.rates((wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3))
         turned = nearest_motion(other, np.zeros_like(share), rates)
         assert turned is not None
-        changed = result.model_copy(update={"mechanism": turned[0].tolist()})
+        changed = result.model_copy(update={"mechanism": turned.tolist()})
     assert judge(wall, changed, 1e-6).accepted is False
 
 
