@@ -18,7 +18,7 @@ from harness.engine.threads import pin
 
 COUNT = 20
 TARGET = 3.0
-"""Greatest ratio that is aimed at for the associated maximum."""
+"""Greatest ratio that is aimed at."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             one, many = (_cost(method, count, report=report) for count in (1, COUNT))
             shown = "yes" if report else "no"
             print(f"{method:<16} {shown:<7} {one:>8.2f} {many:>8.2f} {many / one:>6.2f}", flush=True)
-    print(f"aim: a ratio below {TARGET:g} for la-associated")
+    print(f"aim: a ratio below {TARGET:g}")
     return 0
 
 

@@ -13,6 +13,7 @@ from drystone.walls import Wall, checked_walls
 from harness.engine import compare as engine
 from harness.engine import pipeline
 from harness.engine.executors import Executor, InProcess, LocalExecutor
+from harness.engine.load_case_search import made_together
 from harness.engine.plan import check_methods, plan_case
 from harness.engine.regression import violations
 from harness.engine.run import Limits, Run
@@ -21,6 +22,7 @@ from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 from harness.model.load_cases import load_cases_of
+from harness.model.result import Result as Found
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -144,9 +146,8 @@ def compare(
             progress=progress,
             studies=studies,
             proof_seconds=proof_seconds,
+            remembered=True,
         )
-        if opened is not None:
-            engine.remember(opened, run, runs)
     by_name = {wall.name: wall for wall in chosen}
     rows = [Result.on(by_name[item.case.id], each, item) for item in run.cases for each in item.results]
     return Comparison(chosen, rows, run)
@@ -165,8 +166,11 @@ def compared(
     studies: Sequence[dict[str, Any]] = (),
     certified: bool = True,
     proof_seconds: float = 60.0,
+    remembered: bool = False,
 ) -> ComparisonRun:
     """The comparison that runs make, found or made, and judged, with what the certificates of their walls prove.
+
+    Load cases of one wall are searched together (`harness.engine.load_case_search`).
 
     Args:
         title, command: what the report says was compared, and how to repeat it.
@@ -174,16 +178,32 @@ def compared(
         runs: of these cases.
         store: where results are looked for and kept; None: nowhere.
         executor: where runs are made.
-        fresh, progress: as of `compare`.
+        fresh: as of `compare`.
+        progress: called once for every run planned, when it first has a result.
         studies: for the report to draw.
         certified: whether certificates are looked at; a page that shows nothing of them can leave it.
         proof_seconds: as of `compare`.
+        remembered: whether the store keeps what it consisted of, as its last comparison.
     """
-    results = pipeline.execute(runs, store, 1, fresh=fresh, progress=progress, executor=executor)
+    wall_ids, told = {case.id: case.wall_id for case in cases}, set[tuple[str, str, str]]()
+
+    def tell(run: Run, result: Found, stored: bool) -> None:
+        planned = run.case.id, run.method, str(run.settings)
+        if progress is not None and planned not in told and not (run.given and result.multiplier is None):
+            told.add(planned)
+            progress(run, result, stored)
+
+    def make(asked: Sequence[Run]) -> list[Found]:
+        return pipeline.execute(asked, store, 1, fresh=fresh, progress=tell, executor=executor)
+
+    runs, results = made_together(runs, lambda run: wall_ids[run.case.id], make)
     run = engine.comparison_run(title, command, cases, runs, results)
     if studies:
         run.provenance["studies"] = list(studies)
-    return with_certificates(run, proof_seconds) if certified else run
+    run = with_certificates(run, proof_seconds) if certified else run
+    if remembered and store is not None:
+        engine.remember(store, run, runs)
+    return run
 
 
 def recalled(store: str | Path) -> ComparisonRun:

@@ -64,7 +64,7 @@ class Analysed(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """How the joints of a neighbouring wall move in the mechanism that was found there.
+    """How the joints move in the mechanism that a run found on a neighbouring wall, or under other loads.
 
     Attributes:
         found_by: key of the run that found it.
@@ -97,7 +97,7 @@ class Run:
         method, settings: what is asked; settings are those that differ from the defaults.
         limits: of the run; None: it has none, which only a run in this process can.
         references: it is compared with these.
-        given: motions found on neighbouring walls, which it takes up in place of a search of its own.
+        given: motions that other runs found, which it takes up in place of a search of its own.
         processes: that it may use side by side; they change no answer.
         kept: whether its result may be kept: not where the method is an object that is not installed.
         judge: of what is asked; None: `harness.engine.judge.judge`, the judge of multipliers. Stored results are judged

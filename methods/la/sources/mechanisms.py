@@ -104,7 +104,7 @@ class GivenMechanisms:
 
     motions: tuple[FloatArray, ...]
     most: int = 1000
-    name: ClassVar[str] = "mechanisms of neighbouring walls"
+    name: ClassVar[str] = "mechanisms of other runs"
 
     @property
     def moves(self) -> bool:
