@@ -42,8 +42,8 @@ from methods.springs.warm_up import load_kernels
 _FEWEST = 2000
 """Events up to which every history is traced."""
 _FIRST = 30
-"""Events more for every gap point on the first history. Two walls of 400 irregular blocks come to a plateau after 20
-and 26 events a point. On large walls the first has no more than the others: those in courses need 1 to 3.5 a point."""
+"""Events more for every gap point on the first history. Walls in courses come to a plateau after 1 to 8 events a point,
+two walls of 400 irregular blocks after 20 and 26."""
 _FURTHER = 5
 """The same on histories after the first."""
 _FEWEST_BESIDE = 500
@@ -114,7 +114,7 @@ class GapSprings(Solver):
         scale = _unit(model.assembly)
         histories = self._histories
         limits = [settings.max_events or _FEWEST + count * model.n_points for count in (_FIRST, _FURTHER)]
-        limit = limits[model.assembly.n_free > histories.large]
+        limit = limits[0]
         for step in _chosen_histories(model, settings):
             if settings.histories is None and _agree(results, _AGREEING):
                 break

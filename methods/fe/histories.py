@@ -36,8 +36,7 @@ class HistoryTuning:
         disturbances: random initial shears, in weights of a block, tried in turn where exact ties lead a path astray.
         committed_up_to: shares of the multiplier scale up to which a history is committed, in turn while it is lost.
         astray: multiple of the first history's plateau at which a committed history counts as lost.
-        large: blocks above which a path of too many breakpoints is given up early, and not traced again with disturbed
-            shears.
+        large: blocks above which a path of too many breakpoints is not traced again with disturbed shears.
         doubled: blocks above which a path without commits starts where doubled Newton steps end, to save the early
             events.
         seed: of the disturbances.

@@ -16,7 +16,7 @@ class GapSpringsSettings(GapSettings):
             Where joints are brittle the slip is updated as they break, and no other history is followed. Where they
             dilate it is not updated.
         max_events: changes of state after which one history is given up; None: 2,000 and, for every gap
-            point, 30 on the first history (5 above 500 blocks) and 5 on those after it. Where the first is given up,
+            point, 30 on the first history and 5 on those after it. Where the first is given up,
             the load is raised in finite steps and the path goes on from there, with as many changes again.
         friction_cap: friction coefficients above this are lowered to it while the path is traced; the final state is
             checked with the true ones, and traced again with them if it does not hold. Coefficients such as 1000,
