@@ -8,15 +8,22 @@ by their tangents at the forces F known so far: of a stress block
 and the same with both ends exchanged. They are equations where the joint moves, else inequalities. Of all forces in
 equilibrium those nearest to what was known follow, with the multiplier; and so on until F does not change. The rows are
 the flow vectors too: a joint turns about the inner edge of its strip, and slips by its own dilatancy. A mechanism of
-these, without motion elsewhere, completes the state; where there is none, the joints that move are others.
+these, without motion elsewhere, completes the state.
+
+Where self-stress leaves the forces a choice, the mechanism may leave none: it needs strips of certain widths. Forces
+and mechanism are then solved for together, again by Newton: equilibrium, limits of the rows that move, compatibility
+
+    C' r + f0 + lambda fL = 0,   S_i(a) r + s0_i(a) = 0,   C u = E(a) g,   fL . u = 1,   a = F(r) / F0.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import lsqr
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
 from harness.model.joint_law import block_diagonal
@@ -28,6 +35,10 @@ _SETTLED = 1e-8
 """Change of a pressed share at which the tangents are those at the forces: the error is its square."""
 _ROUNDS = 12
 """Of tangents, at most. Each squares the change."""
+_SOLVED = 1e-12
+"""Of the equations of forces and mechanism, in mean weights of a block and shares of the live work."""
+_STEP = 1e-13
+"""Accuracy of a step of these equations, relative to the sizes in it."""
 _VIOLATION = 5e-10
 """Of a limit, relative to the terms beside it, that forces and mechanism may have: half of what the judge tolerates.
 Where more limits meet in one point than the mechanism has joints, as in a symmetric arch, vertices keep them to 1e-10
@@ -43,11 +54,11 @@ class PressedState:
     mechanism: FloatArray
 
 
-def moving_rows(wall: Assembly, mechanism: FloatArray) -> BoolArray:
-    """(m, 4) rows of the joint law along which the joints of a wall move in a mechanism (n, 3)."""
+def moving_rates(wall: Assembly, mechanism: FloatArray) -> FloatArray:
+    """(m, 4) rates of the rows of the joint law along which the joints move in a mechanism (n, 3); zero at rest."""
     strains = (wall.kinematic_matrix @ mechanism[wall.free].ravel()).reshape(-1, 3)
     rates = wall.law.rates(strains)
-    return np.asarray(rates > _MOVING * abs(strains).max())
+    return np.where(rates > _MOVING * abs(strains).max(), rates, 0.0)
 
 
 def exact_state(
@@ -55,27 +66,100 @@ def exact_state(
     forces: FloatArray,
     moving: BoolArray,
     empty: BoolArray | None = None,
+    hinges: FloatArray | None = None,
 ) -> PressedState | None:
     """The collapse state in which the rows `moving` (m, 4) move, with forces near these (m, 3); None without any.
 
     Args:
         empty: (m,) joints of those that press nothing, since they turn about an end.
+        hinges: (m,) shares that joints which turn press, as of `hinges_of_both`; None: as their forces say.
     """
-    known, reached = forces, moving
-    if empty is not None:
-        reached = moving | (empty[:, None] & np.array([True, True, False, False]))
+    known, reached, held = forces, _reached(moving, empty), None
+    if hinges is not None:
+        held = np.where(_turning(assembly, moving), hinges, np.nan)
     for _ in range(_ROUNDS):
-        share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, reached, forces)
+        share = _shares(assembly, known, held)
+        found = _nearest_forces(assembly, share, reached, forces, held=held)
         if found is None:
             return None
         known, multiplier = found
-        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= _SETTLED:
+        if abs(_shares(assembly, known, held) - share).max(initial=0.0) <= _SETTLED:
             break
     else:
         return None
-    mechanism = _mechanism(assembly, pressed_shares(assembly, known), moving)
+    mechanism = _mechanism(assembly, _shares(assembly, known, held), moving)
     return None if mechanism is None else PressedState(multiplier, known, mechanism)
+
+
+def hinges_of_both(
+    assembly: Assembly, state: PressedState, rates: FloatArray, empty: BoolArray | None = None
+) -> FloatArray | None:
+    """(m,) shares that the joints press in a state whose forces and mechanism are solved for together; None without.
+
+    Args:
+        assembly: the wall; state: where Newton begins, one of the wall within tangents.
+        rates: (m, 4) of the rows of its mechanism, zero where they do not move; empty: as of `exact_state`.
+    """
+    m, n = assembly.n_interfaces, assembly.n_free
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    unit = assembly.force_scale / n
+    strains = sp.csr_matrix(assembly.kinematic_matrix @ sp.diags(column))
+    dead, live = (part * column / unit for part in assembly.free_loads())
+    live *= assembly.load_unit
+    statics, along = sp.csr_matrix(strains.T), sp.csr_matrix(live[None, :])
+    moving, reached = rates > 0.0, _reached(rates > 0.0, empty).ravel()
+    movable, turns = moving.ravel(), _turning(assembly, moving)
+    full = np.where(turns, assembly.crushing + assembly.constant[:, :2].sum(axis=1), 1.0) / unit
+    velocity = state.mechanism[assembly.free].ravel() / column
+    power = float(live @ velocity)
+    forces, multiplier = state.forces.ravel() / unit, state.multiplier / assembly.load_unit
+    velocity, speed = velocity / power, rates.ravel()[movable] / power
+    sizes = np.cumsum([3 * m, 1, 3 * n])
+    for _ in range(_ROUNDS):
+        share = pressed_shares(assembly, forces.reshape(-1, 3) * unit)
+        rows, constant, flow = _tangents(assembly, share)
+        limits, flows = block_diagonal(rows)[reached], sp.csc_matrix(block_diagonal(flow))[:, movable]
+        turning = np.zeros((m, 4))
+        turning[moving] = speed
+        wider = np.where(turns, turning[:, :2].sum(axis=1) / full, 0.0)
+        widening = np.zeros((m, 3, 3))
+        widening[:, :2, :2] = wider[:, None, None]
+        left = [
+            statics @ forces + dead + multiplier * live,
+            limits @ forces + constant.ravel()[reached] / unit,
+            strains @ velocity - flows @ speed,
+            np.array([live @ velocity - 1.0]),
+        ]
+        if max(abs(part).max(initial=0.0) for part in left) <= _SOLVED:
+            return share
+        slopes: list[list[Any]] = [
+            [statics, along.T, None, None],
+            [limits, None, None, None],
+            [block_diagonal(widening), None, strains, -flows],
+            [None, None, along, None],
+        ]
+        matrix = sp.csr_matrix(sp.bmat(slopes))
+        step = lsqr(matrix, -np.concatenate(left), atol=_STEP, btol=_STEP, iter_lim=10 * matrix.shape[1])[0]
+        by_force, by_load, by_motion, by_rate = np.split(step, sizes)
+        forces, multiplier = forces + by_force, multiplier + float(by_load[0])
+        velocity, speed = velocity + by_motion, speed + by_rate
+    return None
+
+
+def _reached(moving: BoolArray, empty: BoolArray | None) -> BoolArray:
+    """(m, 4) rows that are at their limits: both ends of joints that press nothing."""
+    return moving if empty is None else moving | (empty[:, None] & np.array([True, True, False, False]))
+
+
+def _turning(assembly: Assembly, moving: BoolArray) -> BoolArray:
+    """(m,) joints that crush and turn."""
+    return np.asarray(moving[:, :2].any(axis=1) & np.isfinite(assembly.crushing))
+
+
+def _shares(assembly: Assembly, forces: FloatArray, held: FloatArray | None) -> FloatArray:
+    """(m,) shares that are held, and where they are not (nan) those of the forces (m, 3)."""
+    share = pressed_shares(assembly, forces)
+    return share if held is None else np.where(np.isnan(held), share, held)
 
 
 def _tangents(assembly: Assembly, share: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -110,11 +194,13 @@ def _nearest_forces(
     reached: BoolArray,
     near: FloatArray,
     multiplier: float | None = None,
+    held: FloatArray | None = None,
 ) -> tuple[FloatArray, float] | None:
     """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given.
 
     Args:
         reached: (m, 4) rows that are at their limits.
+        held: (m,) shares that the joints press; nan, or None, where their forces are free.
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
@@ -126,10 +212,22 @@ def _nearest_forces(
     dead, live = (part * column for part in assembly.free_loads())
     live = live * (assembly.load_unit / unit)
     apart = sp.identity(3 * m, format="csr")
+    press = np.full(m, np.nan) if held is None else held
+    pressing = np.flatnonzero(~np.isnan(press))
+    tension = assembly.constant[pressing, 0] + assembly.constant[pressing, 1]
+    pressed = press[pressing] * (assembly.crushing[pressing] + tension) - tension
+    ends = sp.csr_matrix(
+        (
+            [1.0] * 2 * len(pressing),
+            (np.repeat(np.arange(len(pressing)), 2), np.add.outer(3 * pressing, [0, 1]).ravel()),
+        ),
+        (len(pressing), 3 * m),
+    )
     matrix = sp.bmat(
         [
             [statics, sp.csr_matrix(live[:, None]), None],
             [block_diagonal(rows), None, None],
+            [ends, None, None],
             [apart, None, sp.hstack([-apart, apart])],
         ]
     )
@@ -141,7 +239,10 @@ def _nearest_forces(
         sp.csc_matrix(matrix),
         np.append(np.zeros(3 * m + 1), np.ones(6 * m)),
         (np.concatenate([-free, at[:1], none]), np.concatenate([free, at[1:], parts])),
-        (np.concatenate([-dead / unit, slack, target]), np.concatenate([-dead / unit, most, target])),
+        (
+            np.concatenate([-dead / unit, slack, pressed / unit, target]),
+            np.concatenate([-dead / unit, most, pressed / unit, target]),
+        ),
     )
     status, _, _ = programme.run()
     vertex = programme.vertex() if status == "optimal" else None

@@ -24,7 +24,7 @@ from harness.model.method import Answer, Finding, Status
 from methods.numerics.claims import growing_forces
 from methods.numerics.crushing_claims import ends_at, not_found
 from methods.numerics.joints_in_series import FurtherLimits, in_series, without_limits
-from methods.numerics.pressed_state import PressedState, exact_state, moving_rows
+from methods.numerics.pressed_state import PressedState, exact_state, hinges_of_both, moving_rates
 from methods.numerics.stress_blocks import BlockLimit, greatest_by_chords, pressed_shares
 
 Solve = Callable[[Assembly], Answer]
@@ -176,9 +176,17 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         hinge = None if answer.mechanism is None else _hinge_shares(assembly, answer.mechanism)
         if answer.finding is Finding.COLLAPSES and hinge is not None:
             assert of_wall.mechanism is not None
-            moving = tangents.rates_of_joints(moving_rows(wall, of_wall.mechanism).astype(float)) > 0.0
-            empty = np.isfinite(assembly.crushing) & moving[:, :2].any(axis=1) & (hinge <= options.pressed)
-            state = exact_state(assembly, answer.forces, moving, empty)
+            rates = tangents.rates_of_joints(moving_rates(wall, of_wall.mechanism))
+            empty = np.isfinite(assembly.crushing) & (rates[:, :2] > 0.0).any(axis=1) & (hinge <= options.pressed)
+            state = exact_state(assembly, answer.forces, rates > 0.0, empty)
+            if state is None:
+                assert answer.multiplier is not None
+                assert answer.mechanism is not None
+                near = PressedState(answer.multiplier, answer.forces, answer.mechanism)
+                both = hinges_of_both(assembly, near, rates, empty)
+                if both is not None:
+                    hinge = np.where((rates[:, :2] > 0.0).any(axis=1), both, hinge)
+                    state = exact_state(assembly, answer.forces, rates > 0.0, empty, both)
             if state is not None and state.multiplier > 0.0:
                 found.append(_with_state(answer, state, rounds))
                 assert answer.multiplier is not None

@@ -113,6 +113,19 @@ def test_a_path_of_a_wall_whose_joints_crush_names_its_own_joints_and_blocks():
         assert abs(balance).max() <= 1e-9 * wall.force_scale
 
 
+@pytest.mark.parametrize(
+    ("name", "seed"),
+    [
+        ("fe", 2019),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in (("la", 2019), ("fe", 2026), ("la", 2026))),
+    ],
+)
+def test_strips_that_the_forces_leave_open_are_as_wide_as_the_mechanism_needs(name: str, seed: int):
+    """Self-stress leaves the forces a choice, and only one width of each strip lets the blocks move together."""
+    result = found(name, weak_wall(seed))
+    assert result.multiplier == pytest.approx({2019: 0.6395456831, 2026: 12.8471634366}[seed], rel=1e-9)
+
+
 def test_a_wall_of_which_one_search_knows_no_exact_state_has_no_answer_rather_than_a_wrong_one():
     wall = weak_wall(1024)
     once = LimitAnalysis(tangents=TangentTolerances(rounds=1)).solve(wall, SearchSettings())
