@@ -109,7 +109,7 @@ def test_more_load_cases_than_are_answered_are_counted():
     ("method", "pattern", "count"), [("la-associated", running_bond(3, 4), 20), ("fe", stack(2), 3)]
 )
 def test_load_cases_together_have_the_bits_of_each_alone(method: str, pattern: dict[str, Any], count: int):
-    """One process answers all of them; nothing goes from one load case to the next by a method that takes up nothing."""
+    """One process answers all; nothing goes from one to the next where the method takes nothing up."""
     cases = {f"c{k}": {"live": {"body": [{"per_weight": [1.0, -0.02 * k]}]}} for k in range(count)}
     made = drystone.build_wall(wall_data(pattern, loads={}, load_cases=cases), "pier")
     together = drystone.compare(made, [method]).results
