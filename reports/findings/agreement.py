@@ -11,10 +11,15 @@ from harness.model.assembly import Assembly, FloatArray, polygon_area
 from harness.model.comparison import CaseResults
 from harness.model.method import Status
 from harness.model.ranges import Range, differences, range_of
-from harness.model.result import Result
+from harness.model.result import Result, normalised_mechanism, relative_velocities
 from reports.geometry import shapes
 from reports.labels import labels
 from reports.memo import memo
+
+_SAME_JOINT, _SAME_MEASURED = 1e-3, 0.05
+"""Relative velocity, of the fastest vertex, by which a joint moves in two mechanisms that are called the same: blocks
+at rest move slower than the first (`shapes.moving`), and measured velocity fields scatter by as much as the second,
+which a drawing hardly shows."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,7 @@ class Agreement:
             and 0 where the other lies within.
         within: whether one of the two is a measured bracket and the other lies within it.
         cosine: of the two velocity fields, 1 where they are the same motion.
+        other_joints: how many joints move otherwise, as `other_joints` counts them.
         same_state: share of interfaces in the same state.
         only_first, only_second: ids of blocks that move in one and not in the other.
     """
@@ -35,10 +41,16 @@ class Agreement:
     second: str
     difference: float | None
     cosine: float | None
+    other_joints: int | None
     same_state: float | None
     only_first: list[str]
     only_second: list[str]
     within: bool = False
+
+    @property
+    def same_mechanism(self) -> bool:
+        """Whether every joint moves alike in both; not of fields of which one is at rest or is not there."""
+        return self.other_joints == 0
 
 
 def mains(item: CaseResults) -> list[Result]:
@@ -92,6 +104,30 @@ def velocity_cosine(measure: FloatArray, first: FloatArray, second: FloatArray) 
     return float((measure * u * v).sum() / np.sqrt(norm))
 
 
+def other_joints(assembly: Assembly, first: Result, second: Result) -> int | None:
+    """How many joints open or slide otherwise in the mechanism of a second result, scaled to fit that of the first.
+
+    A cosine does not show whether two mechanisms are the same: one block of thousands that moves otherwise leaves it
+    at 1, and what measured velocity fields scatter lowers it. None where one of them is at rest or has no mechanism.
+    """
+    if first.mechanism is None or second.mechanism is None:
+        return None
+    motions = []
+    for result in (first, second):
+        opening, slip = relative_velocities(
+            assembly, normalised_mechanism(assembly, np.asarray(result.mechanism, dtype=float))
+        )
+        motions.append(np.column_stack([opening, slip]))
+    own, other = motions
+    square = float((other * other).sum())
+    if not square or not own.any():
+        return None
+    scale = max(float((own * other).sum()) / square, 0.0)
+    measured = "approximate" in (first.flow, second.flow)
+    apart = abs(own - scale * other).max(axis=1)
+    return int((apart > (_SAME_MEASURED if measured else _SAME_JOINT)).sum())
+
+
 def _polar_moment(polygon: FloatArray, centroid: FloatArray) -> float:
     x, y = (polygon - centroid).T
     x1, y1 = np.roll(x, -1), np.roll(y, -1)
@@ -114,7 +150,17 @@ def agreement(assembly: Assembly, first: Result, second: Result, measure: FloatA
         only_second = [assembly.block_ids[i] for i in np.flatnonzero(moves_too & ~moves)]
     if first.states and second.states and "approximate" not in (first.flow, second.flow):
         same = float(np.mean([a == b for a, b in zip(first.states, second.states, strict=True)]))
-    return Agreement(first.method, second.method, difference, cosine, same, only_first, only_second, within)
+    return Agreement(
+        first.method,
+        second.method,
+        difference,
+        cosine,
+        other_joints(assembly, first, second),
+        same,
+        only_first,
+        only_second,
+        within,
+    )
 
 
 def agreements(item: CaseResults) -> list[Agreement]:

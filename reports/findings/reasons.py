@@ -15,8 +15,6 @@ from reports.findings.joints import motion
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
 
-SAME_MOTION = 0.9999
-"""Cosine of velocity fields from which two mechanisms are called the same: fields rounded to 1e-5 differ by less."""
 ONE_BODY, APART = 0.01, 0.2
 """Share of a motion that one rigid motion leaves, up to which it is one body's, and up to which it is mainly one's."""
 _TOE = 0.05
@@ -149,9 +147,8 @@ def _histories(states: list[Result], *, several: bool) -> list[str]:
 
 def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArray) -> str:
     pair = agreement(assembly, least, other, measure)
-    same_motion = pair.cosine is not None and pair.cosine >= SAME_MOTION
     head = f"{least.method} and {other.method} ({_difference(least, other)})"
-    if same_motion:
+    if pair.same_mechanism:
         return f"{head}: the same mechanism, other forces.{_friction(assembly, least, other)}"
     clauses: list[str] = []
     first, second = motion(assembly, least), motion(assembly, other)
@@ -163,7 +160,7 @@ def _reason(assembly: Assembly, least: Result, other: Result, measure: FloatArra
         if blocks:
             verb = "moves" if len(blocks) == 1 else "move"
             clauses.append(f"{numbers.count(len(blocks), 'block')} {verb} in {method} only")
-    cosine = "" if pair.cosine is None else f" (cosine {numbers.plain(pair.cosine, 3)})"
+    cosine = "" if pair.cosine is None else f" (cosine {numbers.cosine(pair.cosine)})"
     what = f"mechanisms differ{cosine}"
     return f"{head}: {what}{': ' + '; '.join(clauses) if clauses else ''}.{_friction(assembly, least, other)}"
 

@@ -62,6 +62,11 @@ def multiplier(value: float | None, known: int | None = None) -> str:
     return plain(value, max(1, min(5, known + 1 + math.floor(math.log10(abs(value))))))
 
 
+def cosine(value: float | None) -> str:
+    """A cosine of velocity fields, rounded down so that none but that of equal fields is printed as 1, or a dash."""
+    return NOTHING if value is None else f"{math.floor(1e4 * value + 1e-9) / 1e4:.4f}".replace("-", "−")
+
+
 def at_point(text: str) -> tuple[str, str] | None:
     """What stands before the decimal point, and the rest from the point on; None of anything but a plain number."""
     whole, point, rest = text.partition(".")

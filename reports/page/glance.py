@@ -26,7 +26,7 @@ from reports.drawing.mechanism_drawing import loaded_mechanism, moved_wall
 from reports.drawing.svg import inline
 from reports.findings.agreement import agreement, mains
 from reports.findings.joints import joints_in_words, motion
-from reports.findings.reasons import SAME_MOTION, mechanism_in_words
+from reports.findings.reasons import mechanism_in_words
 from reports.geometry import shapes
 from reports.labels import labels, numbers
 from reports.labels.wall_summary import value_in_words
@@ -205,31 +205,28 @@ def _joints(item: CaseResults, result: Result) -> str:
 
 
 def mechanisms_compared(item: CaseResults) -> str:
-    """Which two families have the most alike mechanisms, and how the least state stands to the others."""
+    """Which families have the same mechanism or the most alike ones, and how the least state stands to the others."""
     drawn = [r for r in mains(item) if r.mechanism is not None and r.multiplier is not None]
-    pairs = [
-        (cosine, first, second)
-        for first, second in itertools.combinations(drawn, 2)
-        if (cosine := agreement(item.case.assembly, first, second).cosine) is not None
-    ]
+    found = [agreement(item.case.assembly, first, second) for first, second in itertools.combinations(drawn, 2)]
+    pairs = {frozenset([pair.first, pair.second]): pair for pair in found if pair.cosine is not None}
     if not pairs:
         return ""
-    if min(cosine for cosine, _, _ in pairs) >= SAME_MOTION:
-        return f"{labels.all_of(r.method for r in drawn)} find the same mechanism. {_paper_found(item)}".strip()
-    cosine, first, second = max(pairs, key=lambda pair: pair[0])
-    alike = "the same mechanism" if cosine >= SAME_MOTION else "the most similar mechanisms"
-    sentences = [f"{labels.all_of([first.method, second.method])} find {alike} (cosine {_cosine(cosine)})."]
-    for other in (r for r in drawn if r is not first and r is not second):
-        near = max(c for c, a, b in pairs if other in (a, b))
+    names, best = max(pairs.items(), key=lambda each: (each[1].same_mechanism, each[1].cosine))
+    alike = frozenset().union(names, *(two for two, pair in pairs.items() if pair.same_mechanism and two & names))
+    who = labels.all_of(r.method for r in drawn if r.method in alike)
+    if best.same_mechanism and len(alike) == len(drawn):
+        return f"{who} find the same mechanism. {_paper_found(item)}".strip()
+    what = "the same mechanism" if best.same_mechanism else "the most similar mechanisms"
+    cosine = min(pair.cosine or 0.0 for two, pair in pairs.items() if two <= alike)
+    sentences = [f"{who} find {what} (cosine {numbers.cosine(cosine)})."]
+    for other in (r for r in drawn if r.method not in alike):
+        near = max((pair for two, pair in pairs.items() if other.method in two), key=lambda pair: pair.cosine or 0.0)
+        joints = numbers.count(near.other_joints or 0, "joint")
         sentences.append(
-            f"{other.method.upper()} finds another mechanism (cosine {_cosine(near)}){_below(item, other, drawn)}."
+            f"{other.method.upper()} finds another mechanism (cosine {numbers.cosine(near.cosine)}, "
+            f"other motion at {joints}){_below(item, other, drawn)}."
         )
     return " ".join(filter(None, [*sentences, _paper_found(item)]))
-
-
-def _cosine(value: float) -> str:
-    """A cosine, rounded down so that none but that of equal fields is printed as 1."""
-    return f"{np.floor(1e4 * value + 1e-9) / 1e4:.4f}".replace("-", "−")
 
 
 def _below(item: CaseResults, least: Result, others: list[Result]) -> str:

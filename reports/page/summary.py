@@ -20,7 +20,7 @@ from reports.drawing.display_list import DisplayList
 from reports.drawing.mechanism_drawing import mechanism_drawing, overlay_drawing
 from reports.findings.agreement import agreement, mains, spread
 from reports.findings.joints import joints_in_words, motion
-from reports.findings.reasons import SAME_MOTION, mechanism_in_words
+from reports.findings.reasons import mechanism_in_words
 from reports.findings.strength import least_safe
 from reports.geometry import shapes
 from reports.labels import labels, numbers
@@ -204,7 +204,7 @@ def _agreement(item: CaseResults) -> str:
 
 
 def _mechanisms(item: CaseResults) -> str:
-    """Whether the least state and the highest of the other families' have one mechanism, by their velocity fields."""
+    """Whether the least state and the highest of the other families' have one mechanism, joint by joint."""
     least = least_known(item)
     others = [
         r
@@ -218,7 +218,7 @@ def _mechanisms(item: CaseResults) -> str:
     if pair.cosine is None or not _above(highest, least):
         return ""
     names = f"{least.method.upper()} and {highest.method.upper()}"
-    if pair.cosine >= SAME_MOTION:
+    if pair.same_mechanism:
         return f"the mechanism of {names} is the same, but equilibrium does not determine the forces"
     return f"the mechanisms of {names} differ"
 

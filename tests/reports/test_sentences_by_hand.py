@@ -39,7 +39,7 @@ def test_why_two_states_part_is_told_in_joints_cosine_and_the_work_of_friction()
     case, slides = block_that(0.4, "la", (1.0, 0.0, 0.0), 0.1)
     _, turns = block_that(0.44, "fe", (0.25, 0.5, -1.0), 0.1)
     assert reasons.reasons(CaseResults(case, [slides, turns])) == [
-        "la and fe (+10.00 %): mechanisms differ (cosine 0.387): 2 joints slide in la only; 2 joints open in fe only. "
+        "la and fe (+10.00 %): mechanisms differ (cosine 0.3872): 2 joints slide in la only; 2 joints open in fe only. "
         "Friction takes 50 % of the live load’s work in la and 0 % in fe."
     ]
     pair = agreement.agreement(case.assembly, slides, turns)
