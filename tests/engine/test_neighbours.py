@@ -93,6 +93,38 @@ def test_runs_of_other_joints_or_settings_take_nothing_from_each_other(tmp_path:
     assert asking == []
 
 
+def test_a_run_that_did_not_try_what_neighbours_found_is_never_one_that_none_led_lower(tmp_path: Path):
+    asked = study(wall=wall_data(stack(2)), vary={"friction": [1.0, 1.1, 1.2]})
+    runs = expand(asked, sources_of(asked))
+    with open_store(tmp_path / "s.sqlite") as store:
+        rows = [row for _, row, _ in sweep(runs, store, LocalExecutor(1))]
+        (stopped, *_), environment = (store.get(str(rows[0]["key"])) or ()), 1.0
+        stopped = stopped.model_copy(update={"details": {"stopped_by_limit": True}})
+        store.put("stopped", stopped, environment)
+
+        def make(some: Any) -> list[Row]:
+            ends = [
+                ("timeout", "It took 2 s", ""),
+                ("crashed", "Signal 11", ""),
+                ("not_converged", "No fit", "stopped"),
+            ]
+            return [
+                dict(row, status=status, sentence=sentence, key=key or row["key"], multiplier=None, finding="none")
+                for row, (status, sentence, key) in zip(rows, ends, strict=True)
+            ]
+
+        table = tidy(handed_on(runs, rows, store, make), varied_of(asked))
+    assert table["from_neighbour"].isna().all()
+    assert table["neighbour_failure"].tolist() == ["timeout: It took 2 s", "crashed: Signal 11", "stopped: No fit"]
+    assert table["multiplier"].tolist() == [row["multiplier"] for row in rows]
+    assert summarise(asked, table).remarks[:4] == [
+        "1 of 3 runs did not try all mechanisms of their neighbours, timeout: It took 2 s",
+        "1 of 3 runs did not try all mechanisms of their neighbours, crashed: Signal 11",
+        "1 of 3 runs did not try all mechanisms of their neighbours, stopped: No fit",
+        "No other run found a lower state from the mechanisms of its neighbours.",
+    ]
+
+
 def test_a_given_mechanism_counts_by_the_forces_of_this_wall_alone():
     la = load_method("la")
     assert la.follows_motions

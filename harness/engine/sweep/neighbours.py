@@ -21,6 +21,7 @@ from harness.engine.store import Store
 from harness.engine.sweep.expand import SweepRun
 from harness.engine.sweep.running import Row
 from harness.model.assembly import Assembly, IntArray
+from harness.model.details import AnswerDetails
 from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.result import relative_velocities
@@ -58,6 +59,7 @@ class _Cell:
     near: list[_Cell] = field(default_factory=list)
     motion: Motion | None = None
     handed: set[str] = field(default_factory=set)
+    failure: str = ""
 
     def __post_init__(self) -> None:
         self.alone = self.multiplier
@@ -82,14 +84,23 @@ class _Cell:
         self.handed.update(fresh)
         return replace(self.run, given=tuple(fresh.values())) if fresh else None
 
-    def takes(self, row: Row, lower: float) -> bool:
-        """Whether a row is a lower state, which then stands for the run; its cost counts in any case."""
+    def takes(self, row: Row, lower: float, failure: str) -> bool:
+        """Whether a row is a lower state, which then stands for the run; its cost counts in any case.
+
+        Args:
+            row: of a run with what neighbours found.
+            lower: relative difference from which it is lower.
+            failure: why it did not try all of that; then it is not known whether some of it leads lower.
+        """
         spent = {name: _sum(self.row[name], row[name]) for name in ("cpu_seconds", "wall_seconds")}
         found = _multiplier(row)
         better = found < self.multiplier - lower * abs(found)
         self.row = (self.row | row if better else self.row) | spent
         if better:
             self.row |= {"from_neighbour": True, "multiplier_alone": self.alone if np.isfinite(self.alone) else None}
+        self.failure = self.failure or failure
+        if self.failure:
+            self.row |= {"neighbour_failure": self.failure, "from_neighbour": self.row["from_neighbour"] or None}
         return better
 
 
@@ -106,7 +117,8 @@ def handed_on(
         sharing: how far; None: `Sharing()`.
 
     Returns:
-        one row a run; where a state was taken over its `multiplier_alone` is what the run found by itself.
+        one row a run; where a state was taken over its `multiplier_alone` is what the run found by itself; where a run
+        ended before it had tried all that neighbours found its `neighbour_failure` says why.
     """
     chosen = sharing or Sharing()
     by_number = {int(row["number"]): row for row in rows}
@@ -119,7 +131,11 @@ def handed_on(
         if not asked:
             break
         ended = {int(row["number"]): row for row in make([run for _, run in asked.values()])}
-        changed = [cell for number, (cell, _) in asked.items() if cell.takes(ended[number], chosen.lower)]
+        changed = [
+            cell
+            for number, (cell, _) in asked.items()
+            if cell.takes(ended[number], chosen.lower, _failure(ended[number], store))
+        ]
     return [row for _, row in sorted((by_number | {cell.run.number: cell.row for cell in cells}).items())]
 
 
@@ -165,6 +181,17 @@ def _order(values: Sequence[Any]) -> IntArray:
         known = list(dict.fromkeys(values))
     place = {value: number for number, value in enumerate(known)}
     return np.array([place[value] for value in values], dtype=np.int64)
+
+
+def _failure(row: Row, store: Store) -> str:
+    """How a run ended that did not try all that it was given, with its sentence; empty where it did."""
+    status = str(row["status"])
+    if status in (str(Status.OK), str(Status.NOT_CONVERGED)):
+        kept = store.get(str(row["key"]))
+        if kept is None or not AnswerDetails(kept[0].details).stopped_by_limit:
+            return ""
+        status = "stopped"
+    return f"{status.replace('_', ' ')}: {row['sentence']}"
 
 
 def _multiplier(row: Row) -> float:

@@ -91,11 +91,18 @@ STUDY: tuple[StudyColumn, ...] = (
         "from_neighbour",
         "boolean",
         "",
-        "whether a mechanism of a neighbouring wall led to it; missing: none given",
+        "whether a mechanism of a neighbouring wall led to it; missing: none given, or not all were tried",
         _later,
     ),
     StudyColumn(
         "multiplier_alone", "Float64", "1", "what the run had found by itself, where a neighbour led lower", _later
+    ),
+    StudyColumn(
+        "neighbour_failure",
+        "string",
+        "",
+        "how a run with mechanisms of neighbours ended that did not try them all; missing: none, or all were tried",
+        _later,
     ),
     *_from_result("bracket_low", "bracket_high", "bracket_wide", "judge_accepted", "judge_worst_residual"),
     *_from_result("cpu_seconds", "wall_seconds", "peak_memory_bytes", "blocks", "interfaces", "iterations", "started"),

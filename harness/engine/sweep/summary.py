@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from typing import Any
@@ -83,25 +83,37 @@ def varied_of(study: Study) -> list[str]:
     return [*study.vary, *(name for group in study.together for name in group), *study.draw]
 
 
-def _taken_over(rows: pd.DataFrame, place: list[str]) -> tuple[pd.DataFrame, str]:
-    """The runs that a state of a neighbour changed, with both multipliers and the change in percent; and a sentence."""
+def _taken_over(rows: pd.DataFrame, place: list[str]) -> tuple[pd.DataFrame, list[str]]:
+    """The runs that a state of a neighbour changed, with both multipliers and the change in percent; and sentences.
+
+    Of a run that ended before it had tried all mechanisms of its neighbours nothing is said but that, and why.
+    """
     changed = rows[rows["from_neighbour"].eq(True).fillna(False)]
     table = changed[[*place, "multiplier_alone", "multiplier"]].reset_index(drop=True)
     table["change_percent"] = 100.0 * (table["multiplier"] / table["multiplier_alone"] - 1.0)
-    if not len(table):
-        return table, "No run found a lower state from the mechanisms of its neighbours."
-    return table, (
-        f"{len(table)} of {len(rows)} runs take a lower multiplier from the mechanism of a neighbour, by up to "
-        f"{-table['change_percent'].min():.2g} %; forces of their own walls fit it."
-    )
+    failures = rows["neighbour_failure"].dropna()
+    unknown = _by_kind(failures, f"of {len(rows)} runs did not try all mechanisms of their neighbours,")
+    if len(table):
+        most = table["change_percent"].min()
+        by = "" if pd.isna(most) else f", by up to {-most:.2g} %"
+        taken = f"{len(table)} of {len(rows)} runs take a lower multiplier from the mechanism of a neighbour{by}"
+        return table, [f"{taken}; forces of their own walls fit it.", *unknown]
+    who = "No other run" if len(failures) else "No run"
+    return table, [*unknown, f"{who} found a lower state from the mechanisms of its neighbours."]
 
 
-def _unanswered(rows: pd.DataFrame, most: int = 6) -> list[str]:
-    """Why runs gave no answer: of sentences that differ in their numbers alone the first, and how many runs say so."""
+def _unanswered(rows: pd.DataFrame) -> list[str]:
+    """Why runs gave no answer."""
+    lost = rows[rows["status"] != str(Status.OK)]
+    return _by_kind(lost["status"].str.replace("_", " ") + ": " + lost["sentence"], f"of {len(rows)} runs")
+
+
+def _by_kind(sentences: Iterable[str], runs: str, most: int = 6) -> list[str]:
+    """Of sentences that differ in their numbers alone the first, and how many of the runs say so."""
     kinds: dict[str, list[str]] = {}
-    for status, sentence in rows.loc[rows["status"] != str(Status.OK), ["status", "sentence"]].itertuples(index=False):
-        kinds.setdefault(without_numbers(sentence), []).append(f"{status.replace('_', ' ')}: {sentence}")
-    said = [f"{len(alike)} of {len(rows)} runs {alike[0]}" for alike in kinds.values()]
+    for sentence in sentences:
+        kinds.setdefault(without_numbers(sentence), []).append(sentence)
+    said = [f"{len(alike)} {runs} {alike[0]}" for alike in kinds.values()]
     return said[:most] + [f"and {len(said) - most} reasons more, in the rows"] * (len(said) > most)
 
 
@@ -112,8 +124,8 @@ def summarise(study: Study, rows: pd.DataFrame) -> GridSummary:
     tables = {"quantiles": statistics.quantiles(rows, groups)}
     remarks = []
     if study.neighbours:
-        tables["neighbours"], sentence = _taken_over(rows, ["case", "method", *varied_of(study)])
-        remarks.append(sentence)
+        tables["neighbours"], sentences = _taken_over(rows, ["case", "method", *varied_of(study)])
+        remarks.extend(sentences)
     counted = statistics.answered(rows)
     lost = len(rows) - len(counted)
     if lost:
