@@ -98,15 +98,15 @@ def test_a_run_that_did_not_try_what_neighbours_found_is_never_one_that_none_led
     runs = expand(asked, sources_of(asked))
     with open_store(tmp_path / "s.sqlite") as store:
         rows = [row for _, row, _ in sweep(runs, store, LocalExecutor(1))]
-        (stopped, *_), environment = (store.get(str(rows[0]["key"])) or ()), 1.0
-        stopped = stopped.model_copy(update={"details": {"stopped_by_limit": True}})
-        store.put("stopped", stopped, environment)
+        kept = store.get(str(rows[0]["key"]))
+        assert kept is not None
+        store.put("early", kept[0].model_copy(update={"details": {"stopped_by_limit": True}}), 1.0)
 
         def make(some: Any) -> list[Row]:
             ends = [
                 ("timeout", "It took 2 s", ""),
                 ("crashed", "Signal 11", ""),
-                ("not_converged", "No fit", "stopped"),
+                ("not_converged", "No fit", "early"),
             ]
             return [
                 dict(row, status=status, sentence=sentence, key=key or row["key"], multiplier=None, finding="none")
