@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CapacityCurve:
-    """The multiplier of the live load against the displacement of a wall. k points.
+    """The multiplier of the live load against the displacement of a wall, an upper bound of what it bears. k points.
 
     Attributes:
         assembly: the wall as drawn.
@@ -64,7 +64,7 @@ class CapacityCurve:
     def sentence(self) -> str:
         """What was found, and what the judge says."""
         said = states_in_words(self.judgements)
-        begins = f"The multiplier is {self.multiplier[0]:.7g} as drawn"
+        begins = f"The multiplier, an upper bound, is {self.multiplier[0]:.7g} as drawn"
         if self.ultimate is None:
             last = with_unit(f"{self.displacement[-1]:.7g}", self.unit)
             return (
@@ -83,6 +83,7 @@ class CapacityCurve:
             "control": self.control,
             "displacement": self.displacement.tolist(),
             "multiplier": self.multiplier.tolist(),
+            "bounds_above": True,
             "ultimate": self.ultimate,
             "places": self.places[-1].tolist(),
             "judge": [each.model_dump(mode="json") for each in self.judgements],
@@ -103,7 +104,7 @@ class CapacityCurve:
         from reports.figures.settling import settled_figure
         from reports.labels.numbers import labelled
 
-        labels = (labelled(f"displacement of {self.control}", self.unit), "multiplier")
+        labels = (labelled(f"displacement of {self.control}", self.unit), "multiplier, an upper bound")
         return settled_figure(self.assembly, self.places[-1], (self.displacement, self.multiplier), labels)
 
 

@@ -159,6 +159,7 @@ class Domain:
     Attributes:
         names: of the two loads.
         method: that answered.
+        bounds_above: whether the method's multipliers are upper bounds: a wall may fall inside the boundary.
         exact: whether it is the whole polygon of an associated method; otherwise points of the boundary.
         points: counter-clockwise by direction; of an exact domain the vertices, and the directions of unbounded edges.
         edges: (k, 2) normals of the edges of an exact domain, normal . (x, y) <= 1.
@@ -170,6 +171,7 @@ class Domain:
 
     names: tuple[str, str]
     method: str
+    bounds_above: bool
     exact: bool
     points: tuple[BoundaryPoint, ...]
     edges: FloatArray
@@ -213,13 +215,15 @@ class Domain:
             what = (
                 f"{count} points of the boundary of the domain {loads} by {self.method}; between them it is not known."
             )
-        return f"{what} {self.reason}".strip()
+        inside = " It is an upper bound: inside, a wall whose joints slide without dilatancy may fall."
+        return f"{what}{inside if self.bounds_above and (count or len(self.edges)) else ''} {self.reason}".strip()
 
     def as_json(self) -> dict[str, Any]:
         """JSON values: loads, points with their brackets, edges, sentence."""
         return {
             "loads": list(self.names),
             "method": self.method,
+            "bounds_above": self.bounds_above,
             "exact": self.exact and not self.reason,
             "points": [
                 {
@@ -251,7 +255,8 @@ class Domain:
         from reports.figures.domain import domain_figure
 
         whole = self.exact and not self.reason
-        head = f"{self.method}: " + ("the whole domain" if whole else "points of the boundary")
+        bound = ", an upper bound" if self.bounds_above else ""
+        head = f"{self.method}: {'the whole domain' if whole else 'points of the boundary'}{bound}"
         return domain_figure(self.names, head, self.vertices, self.unbounded, exact=whole)
 
 
@@ -330,6 +335,7 @@ def domain_by(
     return Domain(
         pair.names,
         method,
+        loaded.traits.bounds_above,
         exact,
         tuple(point.of_loads(scale) for point in found),
         boundary.edges() * scale,

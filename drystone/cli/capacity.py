@@ -45,8 +45,9 @@ def capacity(
 ) -> None:
     """Find the capacity curve of CASE (an id, a case folder or a WALL.json): multiplier against displacement.
 
-    The wall follows its mechanism by finite rotations, and the multiplier is found again on the way, until it is zero
-    at the ultimate displacement. All states are judged. Exit code 1: it was followed less far, or one is rejected.
+    The wall follows its mechanism by finite rotations, and the multiplier of associated flow, an upper bound, is found
+    again on the way, until it is zero at the ultimate displacement. All states are judged. Exit code 1: it was followed
+    less far, or one is rejected.
     """
     check_table_or_figure(output)
     (found,) = find_cases([case], None, folders)
@@ -64,7 +65,7 @@ def capacity(
         print_json(answer.as_json() | told)
     else:
         say(answer.sentence)
-        say(f"{labelled('displacement', answer.unit):>18} {'multiplier':>14}")
+        say(f"{labelled('displacement', answer.unit):>18} {'upper bound':>14}")
         for x, y in zip(answer.displacement.tolist(), answer.multiplier.tolist(), strict=True):
             say(f"{x:18.7g} {y:14.7g}")
     sys.exit(0 if answer.accepted else 1)

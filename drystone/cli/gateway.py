@@ -24,6 +24,7 @@ from drystone.gateway import NAME, OUTPUTS, TemplateWall, serve
 from drystone.walls import Wall
 from harness.engine.plan import check_methods, find_cases
 from harness.engine.run import Limits
+from harness.model.method_registry import load_method
 
 
 @click.command()
@@ -61,6 +62,7 @@ def gateway(
     for each in chosen:
         warn(each)
     limits = Limits(seconds, memory * 2**20)
+    first = f"{OUTPUTS[0]} (upper bound)" if load_method(method).traits.bounds_above else OUTPUTS[0]
     template = TemplateWall(
         Wall(found if chosen[1:] else chosen[0]), names, method, limits, settings_of(method, settings)
     )
@@ -68,5 +70,5 @@ def gateway(
         template,
         port,
         lambda sentence: say(f"drystone: {sentence}", err=True),
-        lambda address: say(f'Model "{NAME}" at {address}: {", ".join(names)} -> {", ".join(OUTPUTS)}'),
+        lambda address: say(f'Model "{NAME}" at {address}: {", ".join(names)} -> {", ".join([first, *OUTPUTS[1:]])}'),
     )

@@ -157,9 +157,8 @@ def _strength(case: CaseResults) -> Iterator[str]:
     for result in case.results:
         pair = plastic_and_residual_of(result)
         if pair is not None and result.status is Status.OK:
-            bound = ", an upper bound" if result.traits.bounds_above else ""
             plastic, residual = map(answer_text, pair)
-            found.append(f"{result.method} {plastic} plastic, {residual} residual{bound}")
+            found.append(f"{result.method} {plastic} plastic, {residual} residual")
     if found:
         yield (
             f"{case.case.id}, strength of joints: {'; '.join(found)}. Joints of mortar are brittle: rely on the "

@@ -17,6 +17,7 @@ from harness.model.interfaces import DEFAULT_TOLERANCE
 from harness.model.load_cases import named_loads, under_load_case
 from harness.model.method import Status
 from harness.model.result import Result
+from harness.model.result_texts import bound_in_words
 from harness.model.wall import Detection, Wall
 
 _WIDEST = 0.1
@@ -120,5 +121,5 @@ def _joints(found: Assembly | str) -> str | tuple[tuple[int, int], ...]:
 def _said(result: Result) -> str:
     if result.status is not Status.OK:
         return f"{result.status}: {result.sentence}"
-    value = str(result.finding) if result.multiplier is None else f"{result.multiplier:.6g}"
+    value = f"{result.multiplier:.6g}{bound_in_words(result)}" if result.multiplier is not None else str(result.finding)
     return value if result.judge.accepted else f"{value} ({result.judge.outcome.replace('_', ' ')})"

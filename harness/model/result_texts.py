@@ -35,7 +35,18 @@ def answer_text(result: Result) -> str:
         return str(result.finding)
     if result.traits.brackets and result.bracket is not None:
         return f"[{_number(result.bracket[0], 5)}, {_number(result.bracket[1], 5)}]{result.width_in_words}"
-    return "-" if result.multiplier is None else _number(result.multiplier, 7, result.judge.decimals)
+    if result.multiplier is None:
+        return "-"
+    return f"{_number(result.multiplier, 7, result.judge.decimals)}{bound_in_words(result)}"
+
+
+def bound_in_words(result: Result) -> str:
+    """That a multiplier is an upper bound of those without dilatancy, in brackets; empty where it is not.
+
+    So is that of a method which says so, and that of any state of associated flow.
+    """
+    bound = result.traits.bounds_above or result.flow == "associated"
+    return " (upper bound)" if bound and result.finding is Finding.COLLAPSES else ""
 
 
 def strength_in_words(result: Result) -> str:

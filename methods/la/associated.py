@@ -77,7 +77,7 @@ def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: fl
     return collapse_answer(
         problem,
         result.state,
-        f"The greatest multiplier within statics and yield is {multiplier:.7g}.",
+        f"The greatest multiplier within statics and yield is {multiplier:.7g}, an upper bound whatever the flow.",
         tolerance,
         result.iterations,
         {"duality_gap": result.gap, "unknowns": 3 * problem.n_interfaces + 1},

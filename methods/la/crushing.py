@@ -69,8 +69,9 @@ def _collapse(assembly: Assembly, found: BlockLimit) -> Answer:
     return Answer(
         Status.OK,
         Finding.COLLAPSES,
-        f"The greatest multiplier within statics and yield, crushing included, is {multiplier:.7g}; by virtual work on "
-        f"its mechanism none is above {found.upper:.7g}.{_ROUGH if found.inaccurate else ''}",
+        f"The greatest multiplier within statics and yield, crushing included, is {multiplier:.7g}, an upper bound "
+        f"whatever the flow; by virtual work on its mechanism none is above {found.upper:.7g}."
+        f"{_ROUGH if found.inaccurate else ''}",
         multiplier=multiplier,
         forces=found.forces,
         forces_multiplier=multiplier,

@@ -59,11 +59,15 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
     return found
 
 
+def _associated_level(multiplier: float) -> tuple[str, float]:
+    return f"associated maximum {numbers.multiplier(multiplier)} (upper bound)", multiplier
+
+
 def _load_displacement(item: CaseResults, result: Result, moved: list[float], loads: list[float]) -> tuple[str, Markup]:
     levels = []
     associated = item.associated
     if associated is not None and associated.multiplier is not None:
-        levels.append((f"associated maximum {numbers.multiplier(associated.multiplier)}", associated.multiplier))
+        levels.append(_associated_level(associated.multiplier))
     details = AnswerDetails(result.details)
     for name, value in (("peak", details.peak), ("plateau", details.plateau)):
         if value is not None and not any(abs(value - level) < 1e-3 * abs(value) for _, level in levels):
@@ -232,8 +236,7 @@ def _starts(result: Result) -> tuple[str, Markup]:
     least = [min(values[:k]) for k in range(1, len(values) + 1)]
     levels = []
     if details.associated is not None:
-        value = details.associated
-        levels.append((f"associated maximum {numbers.multiplier(value)}", value))
+        levels.append(_associated_level(details.associated))
     if result.multiplier is not None and result.multiplier < min(values) * (1.0 - 1e-9):
         levels.append((f"least known, by descent {numbers.multiplier(result.multiplier)}", result.multiplier))
     chart = charts.Chart(
@@ -276,7 +279,7 @@ def _history(results: list[Result]) -> tuple[str, Markup] | None:
         ]
         return f"Searches: {', '.join(searches)} of CPU time, and found nothing lower.", Markup("")
     levels = [
-        (f"associated maximum {numbers.multiplier(result.multiplier)}", result.multiplier)
+        _associated_level(result.multiplier)
         for result in results
         if result.traits.bounds_above and result.multiplier is not None
     ]

@@ -141,7 +141,7 @@ class GridCell:
             if ends is not None
         ]
         if self.associated is not None:
-            found.append(f"associated maximum {numbers.multiplier(self.associated)}")
+            found.append(f"associated maximum {numbers.multiplier(self.associated)} (upper bound)")
         return ", ".join(found)
 
 

@@ -22,7 +22,6 @@ class StrengthRow:
     method: str
     plastic: str
     residual: str
-    upper_bound: bool
 
 
 def strength_rows(item: CaseResults) -> list[StrengthRow]:
@@ -33,7 +32,7 @@ def strength_rows(item: CaseResults) -> list[StrengthRow]:
         if pair is None or result.status is not Status.OK:
             continue
         plastic, residual = (value_in_words(each) if each.status is Status.OK else numbers.NOTHING for each in pair)
-        rows.append(StrengthRow(result.method, plastic, residual, result.traits.bounds_above))
+        rows.append(StrengthRow(result.method, plastic, residual))
     return rows
 
 

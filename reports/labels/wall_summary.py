@@ -10,7 +10,7 @@ from harness.model.interfaces import limits_of
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding
 from harness.model.result import Result
-from harness.model.result_texts import strength_in_words
+from harness.model.result_texts import bound_in_words, strength_in_words
 from harness.model.wall import Detection
 from reports.geometry import shapes
 from reports.labels import labels, numbers
@@ -77,4 +77,4 @@ def value_in_words(result: Result) -> str:
         return labels.FINDING[result.finding]
     if result.flow == "approximate" and result.bracket is not None:
         return numbers.interval(result.bracket) + result.width_in_words
-    return numbers.multiplier(result.multiplier)
+    return numbers.multiplier(result.multiplier) + bound_in_words(result)

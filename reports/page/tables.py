@@ -238,7 +238,7 @@ def columns(run: ComparisonRun) -> list[Column]:
     """The methods of a comparison, in the paper's order."""
     found = {(result.method, result.family): labels.order(result) for item in run.cases for result in item.results}
     captions = {
-        result.method: result.traits.caption
+        result.method: f"{result.traits.caption}{', an upper bound' if result.traits.bounds_above else ''}"
         for item in run.cases
         for result in item.results
         if result.traits.caption  # a run without an answer of its method tells none

@@ -96,6 +96,9 @@ def test_lost_runs_are_counted_beside_the_mean_of_the_others():
     assert summarise(asked, made_up([0.5, 0.6, None, None])).by_method() == [{"la": "0.55 ± 0.071 (2 of 4 lost)"}]
     assert summarise(asked, made_up([0.5, 0.6])).by_method() == [{"la": "0.55 ± 0.071"}]
     assert summarise(asked, made_up([None])).by_method() == [{"la": "no answer"}]
+    above = made_up([0.5, 0.6]).assign(method="la-associated")
+    said = summarise(study(methods=["la-associated"], vary={"seed": {"seeds": 4}}), above).by_method()
+    assert said == [{"la-associated (upper bound)": "0.55 ± 0.071"}]
 
 
 def test_walls_that_all_collapse_at_one_multiplier_have_no_lognormal_curve():

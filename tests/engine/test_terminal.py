@@ -12,7 +12,7 @@ from harness.model.columns import PRINTED
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.method import Finding, Status
 from harness.model.result import Comparison, Result, Verdict
-from harness.model.result_texts import references_text
+from harness.model.result_texts import answer_text, references_text
 from reports.labels.numbers import met
 
 
@@ -96,3 +96,15 @@ def test_heads_are_those_of_the_declared_columns(capsys):
     shown = capsys.readouterr().out
     assert [column.name for column in PRINTED if column.head not in shown] == []
     assert "CPU time [s]" in shown
+
+
+def test_a_value_of_associated_flow_is_called_an_upper_bound_whoever_found_it(capsys):
+    wall = drystone.library_wall("single-block")
+    result = drystone.analyse(wall, "la-associated")
+    print_result(result, wall.case, result.proof)
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "finding 0.5454545 (upper bound) The greatest multiplier" in shown
+    assert "an upper bound whatever the flow." in shown
+    stopped = result.model_copy(update={"method": "la", "traits": drystone.analyse(wall, "la").traits})
+    assert answer_text(stopped) == "0.5454545 (upper bound)", "all that a search knows that is stopped early"
+    assert answer_text(stopped.model_copy(update={"flow": "non-associated"})) == "0.5454545"

@@ -195,10 +195,12 @@ def test_command(tmp_path: Path):
     done = command("capacity", path, "-o", table)
     assert done.returncode == 0, done.stderr
     assert "falls to zero at the displacement 0.2 m of the live load" in done.stdout
+    assert done.stdout.startswith("The multiplier, an upper bound, is 0.2 as drawn")
     assert table.read_text(encoding="utf-8") == followed(block()).as_csv()
     assert table.read_text(encoding="utf-8").startswith("displacement [m],multiplier\n0.0,")
     done = command("capacity", path, "--block", "1", "--json", "-o", chart)
     listed = json.loads(done.stdout)
     assert listed["multiplier"][0] == pytest.approx(0.2, abs=SHARP)
     assert listed["control"] == "block 1"
+    assert listed["bounds_above"] is True
     assert chart.read_text(encoding="utf-8").lstrip().startswith("<?xml")

@@ -94,6 +94,8 @@ def test_a_load_that_lifts_bounds_a_half_plane():
     found = drystone.domain(FLAT, live=((0.0, 1.0), (0.0, -1.0)))
     np.testing.assert_allclose(found.edges, [(1.0, -1.0)], rtol=1e-9)
     assert "half-plane" in found.sentence
+    assert "It is an upper bound" in found.sentence
+    assert found.as_json()["bounds_above"] is True
 
 
 def test_loads_that_are_multiples_to_rounding_bound_a_strip_too():
@@ -116,6 +118,7 @@ def test_a_wall_that_bears_both_loads_either_way_has_no_boundary():
     found = drystone.domain(wall, live=((1.0, -1.0), (1.0, 0.0)))
     assert found.as_json()["exact"]
     assert "bears every pair" in found.sentence
+    assert "upper bound" not in found.sentence
 
 
 def test_edges_that_do_not_fit_the_vertices_are_no_polygon():

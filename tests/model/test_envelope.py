@@ -46,15 +46,15 @@ def test_the_side_to_which_a_block_leans_governs_with_its_closed_form():
     found = envelope(cases, results)
     assert [result.multiplier for result in results] == pytest.approx([(B1 - x) / y, x / y], rel=1e-9)
     assert found.governing == ("to the left",)
-    assert found.verdict == 'la-associated: load case "to the left" governs, 0.4352941.'
-    assert 'Answers: "to the right" 0.5352941, "to the left" 0.4352941.' in found.sentence
+    assert found.verdict == 'la-associated: load case "to the left" governs, 0.4352941 (upper bound).'
+    assert '0.5352941 (upper bound), "to the left" 0.4352941 (upper bound).' in found.sentence
     assert found.as_json()["governing"] == ["to the left"]
 
 
 def test_equal_load_cases_govern_alike():
     cases, results = answers()
     found = envelope(cases, [results[0], results[0]])
-    assert found.verdict == 'la-associated: load cases "to the right", "to the left" govern, 0.5352941.'
+    assert found.verdict == 'la-associated: load cases "to the right", "to the left" govern, 0.5352941 (upper bound).'
 
 
 def test_of_many_load_cases_the_first_few_are_named():

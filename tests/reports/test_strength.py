@@ -36,7 +36,8 @@ def test_report_shows_plastic_and_residual_side_by_side(written: tuple[str, list
     assert "the residual multiplier: mortar is brittle" in page
     assert "For safety use 0.75000" not in page
     assert '<th scope="row">la</th><td class="num">0.75000</td><td class="num">0.50000</td>' in page
-    assert "la-associated (upper bound)" in page
+    assert '<th scope="row">la-associated</th><td class="num">0.75000 (upper bound)</td>' in page
+    assert "associated maximum, an upper bound" in page, "the head of its column"
     assert "<dt>Strength of joints</dt><dd>cohesion c A 1 kN, tension T 0 kN; all interfaces</dd>" in page
 
 
@@ -79,13 +80,13 @@ def test_terminal_says_both_and_which_is_safe_and_who_refuses(tmp_path: Path):
     path.write_text(json.dumps(DATA), encoding="utf-8")
     done = command("compare", path, "--methods", "la-associated,fe,de-tilt", cwd=tmp_path)
     said = " ".join(done.stdout.split())
-    assert "la-associated 0.7500000 plastic, 0.5000000 residual, an upper bound" in said
+    assert "la-associated 0.7500000 (upper bound) plastic, 0.5000000 (upper bound) residual" in said
     assert "rely on the residual value of a method that is not an upper bound" in said
     assert "fe 0.7500000 plastic, 0.5000000 residual" in said
     assert "de-tilt takes dry joints only" in said
     assert "Take a method that follows the strength of joints (de, fe, fe-newton, fe-qp, la, la-associated, " in said
     alone = command("run", "la-associated", path, cwd=tmp_path)
-    assert "0.5000000, without cohesion and tensile strength" in alone.stdout
+    assert "0.5000000 (upper bound), without cohesion and tensile strength" in " ".join(alone.stdout.split())
 
 
 def test_exports_hold_the_strength_of_joints_that_have_any():

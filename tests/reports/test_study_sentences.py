@@ -52,7 +52,7 @@ def test_a_grid_is_told_in_its_own_figures():
         ("agree", "agree", "LA 0.65000"),
         ("FE high 14 %", "differ-3", "LA 0.60000"),
     ]
-    assert cells[1].hover == "fe 0.59000, la 0.50000, associated maximum 0.88500"
+    assert cells[1].hover == "fe 0.59000, la 0.50000, associated maximum 0.88500 (upper bound)"
     alone = [cells[0], cells[1]]
     assert next(iter(grid._why(alone))) == (
         "On the one wall where they differ, FE is highest, by 8 % from the middle one; its head joints carry 0.1 of "

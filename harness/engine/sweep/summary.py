@@ -13,6 +13,7 @@ from harness.engine.sweep import statistics
 from harness.engine.sweep.study import Study, Whole
 from harness.model.errors import without_numbers
 from harness.model.method import Status
+from harness.model.method_registry import load_method, method_names
 
 _NO_SALIB = "SALib is not installed, so no sensitivities are reported: pip install 'drystone[sensitivity]'"
 
@@ -49,8 +50,10 @@ class GridSummary:
             here = tuple(f"{group[name]:.6g}" if isinstance(group[name], float) else str(group[name]) for name in place)
             said.setdefault(here, {})[str(group["method"])] = _words(group)
         methods = [name for name in self.study.methods if name in set(found["method"])]
+        bounds = {name for name in methods if name in method_names() and load_method(name).traits.bounds_above}
+        heads = {name: f"{name} (upper bound)" if name in bounds else name for name in methods}
         return [
-            dict(zip(place, here, strict=True)) | {name: words.get(name, "-") for name in methods}
+            dict(zip(place, here, strict=True)) | {head: words.get(name, "-") for name, head in heads.items()}
             for here, words in said.items()
         ]
 
