@@ -22,14 +22,14 @@ from harness.model.comparison import CaseResults, Certified, ComparisonRun, Gate
 from harness.model.content import content_of
 from harness.model.details import AnswerDetails
 from harness.model.errors import InputError
-from harness.model.json_text import json_of, read_bytes
+from harness.model.json_text import json_of, read_bytes, require_format, text_of
 from harness.model.library import library
 from harness.model.proof import in_words, is_collapse_state
 from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import SECONDS, verify
-from methods.proof.verify.document import MOST_BYTES, MOST_VALUES, unpacked
+from methods.proof.verify.document import FORMAT, MOST_BYTES, MOST_VALUES, unpacked
 from methods.proof.verify.exact_wall import CertificateError, number
 
 CERTIFICATE = "certificate.json"
@@ -79,15 +79,14 @@ def read_certificate(path: Path) -> Any:
     """The content of a certificate, compressed or not.
 
     Raises:
-        InputError: unreadable, not JSON, or more than a certificate may be, unpacked too.
+        InputError: unreadable, not JSON, of another format, or more than a certificate may be, unpacked too.
     """
     try:
-        text = unpacked(read_bytes(path, MOST_BYTES)).decode("utf-8-sig")
+        content = unpacked(read_bytes(path, MOST_BYTES))
     except CertificateError as error:
         raise InputError(str(error), "Give the whole file, as `drystone bound` wrote it", source=str(path)) from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"it cannot be read ({error})", "Give a UTF-8 text file", source=str(path)) from None
-    return json_of(text, str(path), MOST_VALUES)
+    document = json_of(text_of(content, str(path)), str(path), MOST_VALUES)
+    return require_format(document, FORMAT, "a certificate", str(path))
 
 
 def write_certificate(path: Path, document: dict[str, Any]) -> None:

@@ -212,8 +212,6 @@ def recalled(store: str | Path) -> ComparisonRun:
     Raises:
         InputError: there is no such store, none in it, or it is damaged.
     """
-    if not Path(store).exists():
-        raise InputError("there is no such store", "Run `drystone compare` first", source=str(store))
     with open_store(Path(store), read_only=True) as opened:
         found = engine.recall(opened)
     if found is None:

@@ -33,6 +33,7 @@ from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.case import shipped_cases
 from harness.model.errors import InputError
+from harness.model.json_text import near
 
 
 @click.command()
@@ -112,6 +113,10 @@ def baseline(
         raise InputError("an update of the baseline needs a reason", 'Give --reason "..."', "baseline")
     chosen = find_cases(cases, suite, folders, otherwise="all")
     recorded_in = path or shipped_cases() / "baseline.json"
+    if action == "show" and not recorded_in.exists():
+        raise InputError(
+            "there is no such file", near(recorded_in) or "Write it with `update`", source=str(recorded_in)
+        )
     recorded = recording.read_baseline(recorded_in)
     runs = [run for case in chosen for run in plan_case(case, None, Limits())]
     with open_store(store) as opened, terminal.progress_bar(len(runs), quiet=as_json) as progress:

@@ -87,7 +87,8 @@ def bound(
 @cases_option
 @catching
 def verify_bound(certificate: Path, wall: str | None, as_json: bool, folders: tuple[Path, ...]) -> None:
-    """Check CERTIFICATE in fractions, independently of what found it. Exit code 0: it holds; 1: it is refused.
+    """Check CERTIFICATE in fractions, independently of what found it. Exit code 0: it holds; 1: it is refused; 2: the
+    file is no certificate.
 
     With --wall, a certificate of another wall is refused too.
     """

@@ -37,7 +37,8 @@ from harness.engine.store import open_store
 from harness.engine.sweep.expand import SweepRun, expand, sources_of, warnings_of
 from harness.engine.sweep.quick import quick_study
 from harness.engine.sweep.study import Study, read_study
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean
+from harness.model.json_text import near
 from harness.model.library import library
 from harness.model.method import Status
 from harness.model.writing import check_output
@@ -116,10 +117,12 @@ def _study(what: str, rest: dict[str, Any]) -> tuple[Study, Path | None]:
     if file is not None and file.suffix == ".toml" and not quick:
         return changed(read_study(file), methods, settings, rest["multipliers"], rest["neighbours"]), file.parent
     if not quick:
+        if Path(what).suffix == ".toml" and file is None:
+            raise InputError("there is no such file", near(Path(what)) or "Check the path", source=what)
+        known = shipped_studies()
+        there = f"Give a study file, one of {', '.join(known)}, or a case with --vary or --imperfection"
         raise InputError(
-            f'"{what}" is no study, and nothing varies',
-            f"Give a study file, one of {', '.join(shipped_studies())}, or a case with --vary or --imperfection",
-            "sweep",
+            f'"{what}" is no study, and nothing varies', f"{did_you_mean(what, known)} {there}".strip(), "sweep"
         )
     limits = Limits(rest["seconds"], rest["memory"] * 2**20)
     study = quick_study(what, methods, settings, limits, list(rest["multipliers"]), **quick)
@@ -230,11 +233,17 @@ def store_() -> None:
 @click.argument("others", nargs=-1, required=True, type=click.Path(path_type=Path))
 @catching
 def merge(into: Path, others: tuple[Path, ...]) -> None:
-    """Take the runs of OTHERS over INTO that it does not have; OTHERS stay as they are."""
+    """Take the runs of OTHERS over INTO that it does not have; OTHERS stay as they are.
+
+    Nothing is written where one of OTHERS is no store.
+    """
+    for other in others:
+        if other.exists() and into.exists() and other.samefile(into):
+            raise InputError("it is the store itself", "Name another store", source=str(other))
+        with open_store(other, read_only=True):
+            pass
     with open_store(into) as opened:
         for other in others:
-            if other.exists() and into.exists() and other.samefile(into):
-                raise InputError("it is the store itself", "Name another store", source=str(other))
             taken, there = opened.merge(other)
             say(f"{other}: {taken:,} runs copied, {there:,} were there already")
 

@@ -16,7 +16,8 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from harness.engine.run import Run
-from harness.model.json_text import read_json
+from harness.model.errors import InputError
+from harness.model.json_text import format_in_words, read_json
 from harness.model.method import Finding, Status
 from harness.model.reading import validate
 from harness.model.result import Result
@@ -78,7 +79,14 @@ def read_baseline(path: Path) -> Baseline:
     Raises:
         InputError: a file that is no baseline.
     """
-    return validate(Baseline, read_json(path), str(path)) if path.exists() else Baseline()
+    if not path.exists():
+        return Baseline()
+    data = read_json(path)
+    if not isinstance(data, dict) or "values" not in data:
+        given = format_in_words(data) if isinstance(data, dict) and "format" in data else 'it has no "values"'
+        remedy = "Give one as `drystone baseline update` writes it"
+        raise InputError(f"it is not a baseline: {given}", remedy, source=str(path))
+    return validate(Baseline, data, str(path))
 
 
 def write_baseline(path: Path, baseline: Baseline) -> None:

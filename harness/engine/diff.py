@@ -19,6 +19,7 @@ from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
 from harness.model.difference import Difference, Kind, Pairs, Row, Slower
 from harness.model.errors import InputError
+from harness.model.json_text import near
 from harness.model.method_registry import load_method, method_names
 
 
@@ -62,12 +63,15 @@ def read_answers(path: Path) -> Answers:
     Raises:
         InputError: a file that is neither, or a store without a comparison.
     """
+    if not path.exists():
+        raise InputError("there is no such file", near(path) or _RIGHT, "", str(path))
     if not path.is_file():
-        problem = "it is not a regular file" if path.exists() else "there is no such file"
-        raise InputError(problem, "Give a result store (.sqlite) or a baseline (.json)", "", str(path))
+        raise InputError("it is not a regular file", _RIGHT, "", str(path))
     with path.open("rb") as stream:
-        is_store = stream.read(len(_SQLITE)) == _SQLITE
-    if not is_store:
+        begins = stream.read(len(_SQLITE))
+    if not begins:
+        raise InputError("it is empty", _RIGHT, source=str(path))
+    if begins != _SQLITE:
         recorded = recording.read_baseline(path).values
         rows = {(case, method): Answered(value) for case, kept in recorded.items() for method, value in kept.items()}
         return Answers(str(path), rows, is_baseline=True)
@@ -79,6 +83,7 @@ def read_answers(path: Path) -> Answers:
 
 
 _SQLITE = b"SQLite format 3\0"
+_RIGHT = "Give a result store (.sqlite) or a baseline (.json)"
 
 
 def _answers_of(compared: ComparisonRun, name: str) -> Answers:

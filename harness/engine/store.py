@@ -17,7 +17,7 @@ from typing import Any
 from harness.engine.store_faults import OTHER_FILE, WAIT_SECONDS, cause
 from harness.engine.store_seal import DAMAGE, digest_of, environment_of, opened, sealed, unpacked
 from harness.model.errors import InputError
-from harness.model.json_text import LARGEST_FILE, MOST_NESTED, json_of, nested_deeper
+from harness.model.json_text import LARGEST_FILE, MOST_NESTED, json_of, near, nested_deeper
 from harness.model.result import Result
 
 SCHEMA_VERSION = 2
@@ -74,13 +74,16 @@ class Store:
         read_only: nothing is written, not even beside the file: a store on a read-only disk can be read.
 
     Raises:
-        InputError: the file is no store, damaged, of another version, locked, or cannot be opened, with the cause.
+        InputError: the file is not there to be read, is no store, damaged, of another version, locked, or cannot be
+            opened, with the cause.
     """
 
     def __init__(self, path: Path, *, read_only: bool = False) -> None:
         self.path = path
         self._copy: tempfile.TemporaryDirectory[str] | None = None
         self._connection: sqlite3.Connection | None = None
+        if read_only and not path.exists():
+            raise InputError("there is no such file", near(path) or OTHER_FILE, source=str(path))
         if not read_only:
             _make_folder(path)
         if path.exists() and not stat.S_ISREG(path.stat().st_mode):
@@ -128,7 +131,7 @@ class Store:
         if version not in (0, 1, SCHEMA_VERSION):
             raise InputError(
                 f"it is a store of version {version}",
-                f"This release writes version {SCHEMA_VERSION}: name another file with --store",
+                f"This release reads and writes version {SCHEMA_VERSION}: name another",
                 source=str(self.path),
             )
         names = [row[0] for row in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
@@ -145,6 +148,8 @@ class Store:
                     source=str(self.path),
                 )
         missing = [table for table in COLUMNS if table not in tables]
+        if read_only and not tables:
+            raise InputError("it is empty", OTHER_FILE, source=str(self.path))
         if version == SCHEMA_VERSION and missing:
             raise InputError(f'it is damaged: it has no table "{missing[0]}"', OTHER_FILE, source=str(self.path))
 

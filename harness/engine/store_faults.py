@@ -9,7 +9,7 @@ from pathlib import Path
 
 WAIT_SECONDS = 60.0
 """How long another program that writes the store is waited for."""
-OTHER_FILE = "Name another file with --store"
+OTHER_FILE = "Name a result store, as runs with --store write it"
 
 
 def cause(error: sqlite3.Error, path: Path) -> tuple[str, str]:

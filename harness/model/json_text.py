@@ -72,7 +72,7 @@ def read_bytes(path: Path, limit: int = LARGEST_FILE) -> bytes:
                 raise InputError("it is not a regular file", "Write its content to a file first", source=source)
             content = _up_to(limit + 1, file) if status.st_size <= limit else b""
     except FileNotFoundError:
-        raise InputError("there is no such file", _near(path) or "Check the path", source=source) from None
+        raise InputError("there is no such file", near(path) or "Check the path", source=source) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise InputError(f"it cannot be read ({reason})", "Give a file that you may read", source=source) from None
@@ -94,10 +94,10 @@ def _up_to(most: int, file: IO[bytes]) -> bytes:
     return bytes(content)
 
 
-def _near(path: Path) -> str:
-    """The question whether a file of the same folder was meant; empty where none is near."""
+def near(path: Path) -> str:
+    """The question whether another file of the same folder was meant; empty where none is near."""
     try:
-        return did_you_mean(path.name, sorted(each.name for each in path.parent.iterdir()))
+        return did_you_mean(path.name, sorted({each.name for each in path.parent.iterdir()} - {path.name}))
     except OSError:
         return ""
 
@@ -161,6 +161,31 @@ def text_of(content: bytes, source: str, otherwise: str = "") -> str:
             "Give a UTF-8 text file",
             source=source,
         ) from None
+
+
+def require_format(data: Any, wanted: str, what: str, source: str) -> dict[str, Any]:
+    """The fields of a JSON document of one format.
+
+    Args:
+        data: the document.
+        wanted: the format that is read, as "wall/1".
+        what: a document of it is called, as "a wall".
+        source: what errors call the file.
+
+    Raises:
+        InputError: it is no object, or has another format or version, or none.
+    """
+    if not isinstance(data, dict):
+        raise InputError(f"{what} is a JSON object", f'Begin with {{"format": "{wanted}", ...}}', source=source)
+    if data.get("format") != wanted:
+        remedy = f'This release reads "format": "{wanted}"'
+        raise InputError(f"it is not {what}: {format_in_words(data)}", remedy, "format", source)
+    return data
+
+
+def format_in_words(data: dict[str, Any]) -> str:
+    """The format that a JSON document says it has, as the clause of a sentence."""
+    return f"its format is {value_text(data['format'])}" if "format" in data else "it has no format"
 
 
 def read_json(path: Path, limit: int = LARGEST_FILE) -> Any:

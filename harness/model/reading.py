@@ -14,7 +14,7 @@ from harness.model.build import Built, build
 from harness.model.errors import MOST_WORDED, InputError, did_you_mean, in_file, raise_faults
 from harness.model.field_words import SCOPE, names_at, outside_the_model, remedy_at
 from harness.model.fields import MOST_BLOCKS, TAGS
-from harness.model.json_text import MOST_SHOWN, read_json, value_text
+from harness.model.json_text import MOST_SHOWN, read_json, require_format, value_text
 from harness.model.names import faults_of_data
 from harness.model.wall import Wall
 
@@ -191,11 +191,7 @@ def parse_wall(data: Any, source: str) -> Wall:
     Raises:
         InputError: not an object, another format or version, or any fault of a field.
     """
-    if not isinstance(data, dict):
-        raise InputError("a wall is a JSON object", 'Begin with {"format": "wall/1", ...}', source=source)
-    if data.get("format") != "wall/1":
-        given = f"format is {value_text(data['format'])}" if "format" in data else "it has no format"
-        raise InputError(given, 'This release reads "format": "wall/1"', "format", source)
+    require_format(data, "wall/1", "a wall", source)
     for entries, most in _MOST_ENTRIES.items():
         listed = data.get(entries)
         if isinstance(listed, list) and len(listed) > most:

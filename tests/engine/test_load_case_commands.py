@@ -47,7 +47,7 @@ def test_no_live_load_is_said_to_be_replaced_where_the_file_has_none(tmp_path: P
 def test_run_answers_both_signs_and_says_which_governs(wall: Path):
     done = drystone("run", "la-associated", wall, "--both-signs")
     assert done.returncode == 0, done.stderr
-    assert 'la-associated: load case "to the left" governs, 0.4352941.' in done.stdout
+    assert 'la-associated: load case "to the left" governs, 0.4352941 (upper bound).' in done.stdout
     found = json.loads(drystone("run", "la-associated", wall, "--both-signs", "--json").stdout)
     assert [row["multiplier"] for row in found["results"]] == pytest.approx([RIGHT, LEFT], rel=1e-9)
     assert found["governing"] == ["to the left"]
@@ -57,7 +57,7 @@ def test_compare_shows_the_envelope_of_both_signs(wall: Path, tmp_path: Path):
     words = ("compare", wall, "--methods", "la-associated", "--live", "1,0", "--both-signs", "--no-report")
     done = drystone(*words, "--store", tmp_path / "store.sqlite")
     assert done.returncode == 0, done.stderr
-    assert 'la-associated: load case "to the left" governs, 0.4352941.' in done.stdout
+    assert 'la-associated: load case "to the left" governs, 0.4352941 (upper bound).' in done.stdout
     found = json.loads(drystone(*words, "--store", tmp_path / "store.sqlite", "--json").stdout)
     assert [case["id"] for case in found["cases"]] == ["leaning", "leaning-reversed"]
     assert [row["governing"] for row in found["envelopes"]] == [["to the left"]]

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import sqlite3
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from drystone.cli.main import main
 from tests.commands import drystone
 
 WALL = {
@@ -34,6 +37,9 @@ def wall(tmp_path: Path) -> Path:
         (("run", "la", "wal.json"), 'wal.json: there is no such file. Did you mean "wall.json"?'),
         (("run", "la", "wall.json", "--set", "effort"), '"effort" gives no value. Give NAME=VALUE'),
         (("study", "frictoin"), 'Did you mean "friction"?'),
+        (("sweep", "frictoin"), 'Did you mean "friction"?'),
+        (("sweep", "wal.toml"), "wal.toml: there is no such file. Check the path"),
+        (("baseline", "show", "--file", "wal.json"), 'wal.json: there is no such file. Did you mean "wall.json"?'),
         (("factor", "wall.json", "--share", "half"), "'half' is not a number."),
         (("export", "wall.json", "--method", "lla", "-o", "a.vtu"), '--method: no method is called "lla"'),
         (("new", "stack", "--count", "1.5"), "'1.5' is not a whole number."),
@@ -84,3 +90,63 @@ def test_a_method_for_tests_of_the_engine_stands_in_no_list_and_runs_by_name(wal
     assert "dummy" not in drystone("run", "dumy", wall.name, cwd=wall.parent).stderr
     done = drystone("run", "dummy", wall.name, "--json", cwd=wall.parent)
     assert json.loads(done.stdout)["status"] == "ok"
+
+
+def make_wrong_files(folder: Path) -> None:
+    """Files that are neither stores, certificates nor baselines."""
+    (folder / "folder").mkdir()
+    (folder / "empty.json").touch()
+    (folder / "list.json").write_text("[1]")
+    (folder / "other.json").write_text('{"a": 1}')
+    (folder / "binary.json").write_bytes(bytes([0, 231, 255]) * 99)
+    (folder / "later.json").write_text('{"format": "drystone-bound/9", "digest": ""}')
+    made = sqlite3.connect(folder / "foreign.sqlite")
+    made.execute("CREATE TABLE t (x)")
+    made.close()
+
+
+ON_WRONG_FILES = {
+    ("verify-bound",): {
+        "wall.json": 'format: it is not a certificate: its format is "wall/1". This release reads',
+        "later.json": 'format: it is not a certificate: its format is "drystone-bound/9". This release reads',
+        "other.json": "format: it is not a certificate: it has no format. This release reads",
+        "list.json": 'a certificate is a JSON object. Begin with {"format": "drystone-bound/1", ...}',
+        "empty.json": "it is empty. Give a JSON document",
+        "binary.json": "it is no UTF-8 text",
+        "foreign.sqlite": "it is an SQLite file, as a store of results is",
+        "folder": "it cannot be read (Is a directory)",
+        "wal.json": 'there is no such file. Did you mean "wall.json"?',
+    },
+    ("diff",): {
+        "wall.json": 'it is not a baseline: its format is "wall/1". Give',
+        "later.json": 'it is not a baseline: its format is "drystone-bound/9". Give',
+        "other.json": 'it is not a baseline: it has no "values". Give one as `drystone baseline update` writes it',
+        "list.json": 'it is not a baseline: it has no "values". Give one as `drystone baseline update` writes it',
+        "empty.json": "it is empty. Give a result store (.sqlite) or a baseline (.json)",
+        "binary.json": "it is no UTF-8 text",
+        "foreign.sqlite": 'it is not a result store: its table "t" is another program\'s. Name a result store',
+        "folder": "it is not a regular file. Give a result store (.sqlite) or a baseline (.json)",
+        "wal.json": 'there is no such file. Did you mean "wall.json"?',
+    },
+    ("store", "merge", "into.sqlite"): {
+        **dict.fromkeys(("wall.json", "other.json", "list.json", "binary.json"), "it is not a result store"),
+        "empty.json": "it is empty. Name a result store",
+        "foreign.sqlite": 'it is not a result store: its table "t" is another program\'s. Name a result store',
+        "folder": "it is not a regular file. Name a result store",
+        "wal.json": 'there is no such file. Did you mean "wall.json"?',
+    },
+}
+
+
+@pytest.mark.parametrize("words", ON_WRONG_FILES, ids=" ".join)
+def test_a_wrong_file_is_named_with_what_is_wrong_and_what_would_be_right_and_nothing_is_written(
+    words: tuple[str, ...], wall: Path, monkeypatch: pytest.MonkeyPatch
+):
+    make_wrong_files(wall.parent)
+    before = {each.name: each.stat().st_size for each in wall.parent.iterdir()}
+    monkeypatch.chdir(wall.parent)
+    for name, said in ON_WRONG_FILES[words].items():
+        done = CliRunner().invoke(main, [*words, name])
+        assert done.exit_code == 2, (name, done.output)
+        assert f"drystone: {name}: {said}" in done.output
+        assert {each.name: each.stat().st_size for each in wall.parent.iterdir()} == before

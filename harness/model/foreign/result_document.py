@@ -16,7 +16,7 @@ from harness.model.assembly import Assembly
 from harness.model.details import BAR_FORCES, DEAD_BAR_FORCES, MOVING_FORCES
 from harness.model.errors import InputError
 from harness.model.fields import LARGEST
-from harness.model.json_text import value_text
+from harness.model.json_text import require_format
 from harness.model.method import Answer, Finding, Status
 from harness.model.reading import validate
 
@@ -83,11 +83,7 @@ def answer_of(data: Any, assembly: Assembly, source: str) -> Answer:
     Raises:
         InputError: no such document, or arrays that are not of the size of the wall.
     """
-    if not isinstance(data, dict):
-        raise InputError("a result is a JSON object", 'Begin with {"format": "result/1", ...}', source=source)
-    if data.get("format") != "result/1":
-        given = f"format is {value_text(data['format'])}" if "format" in data else "it has no format"
-        raise InputError(given, 'This release reads "format": "result/1"', "format", source)
+    require_format(data, "result/1", "a result", source)
     found = validate(ResultDocument, data, source)
     arrays = {name: getattr(found, name) for name in (*_OF_INTERFACES, *_OF_BLOCKS)}
     for name, listed in arrays.items():
