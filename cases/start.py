@@ -15,7 +15,7 @@ from cases.matera import Masonry, matera_wall
 from cases.recipe import push, wall
 from cases.useful import buttress as stepped_buttress
 from cases.useful import irregular_stones
-from harness.model.errors import InputError, did_you_mean
+from harness.model.errors import InputError, of_those_there
 from harness.model.wall import Wall
 
 _CLOSER = 0.25
@@ -53,9 +53,7 @@ def laid(bond: str, course: int, left: float, right: float) -> list[float]:
         InputError: an unknown bond.
     """
     if bond not in _BONDS:
-        raise InputError(
-            f'no bond is called "{bond}"', f"{did_you_mean(bond, _BONDS)} There are: {', '.join(_BONDS)}".strip()
-        )
+        raise InputError(f'no bond is called "{bond}"', of_those_there(bond, _BONDS))
     period, places = _BONDS[bond](course)
     first, last = math.floor(left / period) - 1, math.ceil(right / period) + 1
     joints = sorted(period * number + place for number in range(first, last + 1) for place in places)

@@ -27,7 +27,7 @@ from drystone.walls import Wall, library_wall, new_wall
 from harness.engine import pipeline
 from harness.engine.provenance import machine
 from harness.engine.run import Limits
-from harness.model.errors import InputError, did_you_mean
+from harness.model.errors import InputError, of_those_there
 from harness.model.method import Finding, Status
 from harness.model.proof import Standing, is_collapse_state
 from harness.model.result import Verdict
@@ -78,10 +78,7 @@ def wall_set(name: str) -> WallSet:
         InputError: there is no such set.
     """
     if name not in _sets():
-        there = f"There are: {', '.join(_sets())}"
-        raise InputError(
-            f'no set of walls is called "{name}"', f"{did_you_mean(name, _sets())} {there}".strip(), "--set"
-        )
+        raise InputError(f'no set of walls is called "{name}"', of_those_there(name, _sets()), "--set")
     given = _sets()[name]
     return WallSet(name, given["title"], given["version"], tuple(_walls(given)))
 

@@ -19,7 +19,7 @@ from drystone.analysis import Result
 from drystone.comparing import compare
 from drystone.walls import Wall, build_wall
 from harness.engine.run import Limits
-from harness.engine.sweep.paths import has_number, setting_of, with_values
+from harness.engine.sweep.paths import has_number, number_meant, setting_of, with_values
 from harness.model.errors import InputError, optional
 from harness.model.method import Finding
 
@@ -61,7 +61,8 @@ class TemplateWall:
         with_values(document, dict.fromkeys(self.names, 1.0))
         for name in self.names:
             if not has_number(document, name):
-                raise InputError(f'the wall has no number "{name}"', "Write one in the wall, then vary it", "--vary")
+                remedy = number_meant(document, name) or "Write one in the wall, then vary it"
+                raise InputError(f'the wall has no number "{name}"', remedy, "--vary")
 
     def __call__(self, values: Sequence[float]) -> tuple[float, float, float]:
         """What the method finds at these parameters.

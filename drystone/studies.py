@@ -23,7 +23,7 @@ from harness.engine.sweep.running import Row
 from harness.engine.sweep.running import sweep as running
 from harness.engine.sweep.study import Study, read_study
 from harness.model.case import shipped_cases
-from harness.model.errors import InputError, did_you_mean
+from harness.model.errors import InputError, of_those_there
 from harness.model.method_registry import load_method
 from harness.model.reading import wall_json
 
@@ -218,8 +218,7 @@ def shipped_study(name: str, element: str) -> Path:
     """
     known = shipped_studies()
     if name not in known:
-        there = f"{did_you_mean(name, known)} There are: {', '.join(known)}".strip()
-        raise InputError(f'no study is called "{name}"', there, element)
+        raise InputError(f'no study is called "{name}"', of_those_there(name, known), element)
     return known[name]
 
 
@@ -257,10 +256,8 @@ def _asked(
 def _read(what: str | Path) -> tuple[Study, Path]:
     path = study_file(what)
     if path is None:
-        known = ", ".join(shipped_studies())
-        raise InputError(
-            f'no study is called "{what}"', f"Give a file, one of {known}, or a wall and what varies", "sweep"
-        )
+        remedy = f"{of_those_there(str(what), shipped_studies())}; or give a file, or a wall and what varies"
+        raise InputError(f'no study is called "{what}"', remedy, "sweep")
     return read_study(path), path.parent
 
 

@@ -16,7 +16,7 @@ from harness.engine.plan import find_cases
 from harness.model import reading
 from harness.model.assembly import Assembly
 from harness.model.case import Case, CaseFile, case_folders, case_of_wall, id_of, shipped_cases
-from harness.model.errors import InputError, did_you_mean, raise_faults
+from harness.model.errors import InputError, of_those_there, raise_faults
 from harness.model.load_cases import load_cases_of
 from harness.model.wall import Wall as Description
 from harness.model.writing import write_whole
@@ -178,11 +178,10 @@ def new_wall(kind: str, **numbers: Any) -> Wall:
     from cases.start import STARTS
 
     if kind not in STARTS:
-        raise InputError(f'no kind of wall is called "{kind}"', f"{did_you_mean(kind, STARTS)} {', '.join(STARTS)}")
+        raise InputError(f'no kind of wall is called "{kind}"', of_those_there(kind, STARTS))
     known = signature(STARTS[kind]).parameters
     if unknown := [name for name in numbers if name not in known]:
-        remedy = f"{did_you_mean(unknown[0], known)} There are: {', '.join(known)}".strip()
-        raise InputError(f'it has no number "{unknown[0]}"', remedy, kind)
+        raise InputError(f'it has no number "{unknown[0]}"', of_those_there(unknown[0], known), kind)
     return build_wall(started(STARTS[kind], kind, numbers), kind)
 
 

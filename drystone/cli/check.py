@@ -11,6 +11,7 @@ import click
 
 from drystone.checking import Tier, held, planned
 from drystone.cli import terminal
+from drystone.cli.groups import OneOf
 from drystone.cli.junit import tests_of_check, write_junit
 from drystone.cli.options import (
     OUTPUT,
@@ -39,7 +40,7 @@ from harness.model.json_text import near
 @click.command()
 @cases_argument
 @suite_option
-@click.option("--tier", type=click.Choice(["quick", "full"]), default="quick", show_default=True)
+@click.option("--tier", type=OneOf(["quick", "full"]), default="quick", show_default=True)
 @jobs_option
 @store_option
 @fresh_flag
@@ -87,7 +88,7 @@ def check(
 
 
 @click.command()
-@click.argument("action", type=click.Choice(["show", "update"]), default="show")
+@click.argument("action", type=OneOf(["show", "update"]), default="show")
 @cases_argument
 @suite_option
 @click.option("--reason", default="", help="The reason for an update; required.")

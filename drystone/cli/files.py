@@ -11,7 +11,7 @@ from typing import Any, get_args, get_type_hints
 import click
 
 from drystone.cli import terminal
-from drystone.cli.groups import AskingGroup
+from drystone.cli.groups import AskingGroup, OneOf
 from drystone.cli.options import (
     INPUT_ERROR,
     OUTPUT,
@@ -59,7 +59,7 @@ def _endings(use: str, meaning: str) -> str:
 @click.option(
     "--mapping", type=click.Path(path_type=Path), help="Data that the drawing lacks.  [default: DRAWING.toml]"
 )
-@click.option("--units", type=click.Choice(get_args(LengthUnit)), help="Of the drawing, whatever it declares.")
+@click.option("--units", type=OneOf(get_args(LengthUnit)), help="Of the drawing, whatever it declares.")
 @click.option("--scale", metavar="1:N", help="Lengths of the wall in lengths of the drawing, as 1:50 or 50.")
 @click.option("--supports", help='lowest-course, "ground-line Y" or "layer NAME".')
 @click.option("--tolerance", type=click.FloatRange(0.0, min_open=True), help="Greatest gap of a joint, of the wall.")
@@ -69,7 +69,7 @@ def _endings(use: str, meaning: str) -> str:
 @click.option("--accuracy", type=click.FloatRange(0.0, min_open=True), help="Of curves [m].  [default: 0.001]")
 @click.option(
     "--plane",
-    type=click.Choice(["xz", "yz", "xy"]),
+    type=OneOf(["xz", "yz", "xy"]),
     help="Of solids [default: xz], of a DXF [default: xy].",
 )
 @click.option("--at", type=float, help="Where the plane lies on the third axis.  [default: the middle]")

@@ -17,6 +17,18 @@ _IN_WORDS = {
 """Kinds of values as click calls them, and as users do."""
 
 
+class OneOf(click.Choice):  # type: ignore[type-arg]
+    """A choice that answers an unknown word with the one that is near, if there is one."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """As of click, with the question which word was meant."""
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            meant = did_you_mean(str(value), map(str, self.choices))
+            raise click.BadParameter(f"{error.message} {meant}".strip(), ctx, param) from None
+
+
 class AskingGroup(click.Group):
     """A group that answers an unknown command with the one that is near, if there is one."""
 

@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 import click
 
-from drystone.cli.groups import AskingGroup
+from drystone.cli.groups import AskingGroup, OneOf
 from drystone.cli.options import catching, say
 from harness.model.errors import InputError
 from harness.model.foreign.description import NAME, Feature
@@ -46,9 +46,7 @@ def methods() -> None:
 @click.option("--title", help="A few words for the head of a column, of a program that does not describe itself.")
 @click.option("--family", help="Groups methods in the report.  [default: NAME]")
 @click.option("--tolerance", type=float, help="Largest residual that the judge may find.  [default: 1e-7]")
-@click.option(
-    "--takes", multiple=True, type=click.Choice(get_args(Feature)), help="Features of walls; may be repeated."
-)
+@click.option("--takes", multiple=True, type=OneOf(get_args(Feature)), help="Features of walls; may be repeated.")
 @catching
 def add(name: str, command: str, lines: bool, arrays: bool, takes: tuple[str, ...], **said: Any) -> None:
     """Add a program to methods.toml as the method NAME.
@@ -88,7 +86,7 @@ def _describes_itself(name: str, entry: dict[str, Any], path: Path) -> bool:
 
 @click.command()
 @click.argument("name")
-@click.option("--language", type=click.Choice(_LANGUAGES), default="python", show_default=True)
+@click.option("--language", type=OneOf(_LANGUAGES), default="python", show_default=True)
 @catching
 def new_method(name: str, language: str) -> None:
     """Write a method that works, with its tests, into a new folder NAME: the place to begin one of your own.

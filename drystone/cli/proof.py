@@ -9,6 +9,7 @@ from typing import Literal
 import click
 
 from drystone.certificates import nearest, proved, read_certificate, write_certificate
+from drystone.cli.groups import OneOf
 from drystone.cli.options import OUTPUT, case_argument, cases_option, catching, finite, json_flag, print_json, say, warn
 from harness.engine.plan import find_cases
 from harness.engine.run import LONGEST
@@ -32,7 +33,7 @@ from methods.proof.verify.exact_wall import CertificateError
     show_default=True,
     help="Limit for the multiplier intervals.",
 )
-@click.option("--effort", type=click.Choice(["quick", "normal", "deep"]), default="normal", help="Of the search.")
+@click.option("--effort", type=OneOf(["quick", "normal", "deep"]), default="normal", help="Of the search.")
 @cases_option
 @catching
 def bound(

@@ -8,6 +8,7 @@ from typing import NoReturn
 
 import click
 
+from drystone.cli.groups import OneOf
 from drystone.cli.options import (
     OUTPUT,
     case_argument,
@@ -59,7 +60,7 @@ SAID = {
 )
 @click.option(
     "--by",
-    type=click.Choice(list(FOLLOWS)),
+    type=OneOf(list(FOLLOWS)),
     help="With --path: by `fe`, or by distinct elements with deformable joints.",
 )
 @click.option(

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from drystone.analysis import judge as judge_answer
 from drystone.cli import terminal
+from drystone.cli.groups import OneOf
 from drystone.cli.options import (
     OUTPUT,
     case_argument,
@@ -48,7 +49,7 @@ from harness.model.writing import write_whole
 
 
 @click.command(name="list")
-@click.argument("what", type=click.Choice(["cases", "methods", "suites", "formats"]))
+@click.argument("what", type=OneOf(["cases", "methods", "suites", "formats"]))
 @json_flag
 @cases_option
 @catching
@@ -148,7 +149,7 @@ def judge(wall: Path, result: Path, tolerance: float, as_json: bool) -> None:
 
 
 @click.command()
-@click.argument("what", type=click.Choice(["wall", "result", "describe"]), default="wall")
+@click.argument("what", type=OneOf(["wall", "result", "describe"]), default="wall")
 @catching
 def schema(what: str) -> None:
     """Print the JSON Schema of a format: wall/1, result/1 or describe/1."""
@@ -160,9 +161,9 @@ def schema(what: str) -> None:
 @case_argument
 @methods_option(library().methods.one)
 @click.option(
-    "--kind", type=click.Choice(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
+    "--kind", type=OneOf(["mechanism", "forces", "thrust", "comparison"]), default="mechanism", show_default=True
 )
-@click.option("--format", "suffix", type=click.Choice(["pdf", "svg", "png"]), default="pdf", show_default=True)
+@click.option("--format", "suffix", type=OneOf(["pdf", "svg", "png"]), default="pdf", show_default=True)
 @click.option("-o", "--output", type=OUTPUT, help="File to write.  [default: CASE-KIND.FORMAT]")
 @store_option
 @cases_option

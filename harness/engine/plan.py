@@ -11,7 +11,7 @@ from typing import Any
 
 from harness.engine.run import Limits, Run
 from harness.model.case import Case, case_folders, case_of_wall, id_of, read_case, shipped_cases
-from harness.model.errors import InputError, did_you_mean, in_file
+from harness.model.errors import InputError, did_you_mean, in_file, of_those_there
 from harness.model.json_text import MOST_SHOWN
 from harness.model.library import library
 from harness.model.method import Method
@@ -76,7 +76,9 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
     known = method_names()
     for name in names:
         if name not in known:
-            raise InputError(f'no method is called "{name[:MOST_SHOWN]}"', _methods_meant(name), element)
+            raise InputError(
+                f'no method is called "{name[:MOST_SHOWN]}"', of_those_there(name, listed_methods()), element
+            )
 
 
 def check_order(method: str, case: str) -> None:
@@ -103,12 +105,6 @@ def check_no_methods(words: Sequence[str], methods: Sequence[str] | None) -> Non
         raise InputError(
             f'"{found[0]}" is a method and no case', f"Separate methods by commas: --methods {asked}", "cases"
         )
-
-
-def _methods_meant(name: str) -> str:
-    """What may have been meant by a name that no method has."""
-    known = listed_methods()
-    return f"{did_you_mean(name, known)} There are: {', '.join(known)}".strip()
 
 
 def check_taken(method: Method, case: Case, option: str = "") -> None:

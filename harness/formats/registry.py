@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.model.errors import InputError, did_you_mean, optional
+from harness.model.errors import InputError, of_those_there, optional
 
 if TYPE_CHECKING:
     from harness.formats.drawing import Asked, Drawing
@@ -196,7 +196,7 @@ def format_read(path: Path) -> Format:
         known = [suffix for suffix, item in BY_SUFFIX.items() if item.reader]
         raise InputError(
             f'a file that ends in "{suffix}" is not read',
-            f"{did_you_mean(suffix, known)} There are: {', '.join(known)} (of COMPAS)".strip(),
+            f"{of_those_there(suffix, known)} (of COMPAS)",
             source=str(path),
         )
     found.refuse_without_package()
@@ -213,8 +213,8 @@ def format_written(path: Path) -> Format:
     found = BY_SUFFIX.get(suffix)
     if found is None or not found.writer:
         known = [suffix for suffix, item in BY_SUFFIX.items() if item.writer]
-        hint = f"{did_you_mean(suffix, known)} There are: {', '.join(known)}".strip()
-        raise InputError(f'a file that ends in "{suffix}" is not written', hint, source=str(path))
+        problem = f'a file that ends in "{suffix}" is not written'
+        raise InputError(problem, of_those_there(suffix, known), source=str(path))
     if not found.written_without:
         found.refuse_without_package()
     return found

@@ -207,6 +207,12 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return _did_you_mean(word, tuple(known))
 
 
+def of_those_there(word: str, known: Iterable[str]) -> str:
+    """Which of the known words was meant by one that is not among them, and all there are: a remedy."""
+    names = list(known)
+    return f"{did_you_mean(word, names)} There are: {first_few(names, MOST_NAMED)}".strip()
+
+
 @lru_cache(maxsize=128)  # a field that is misspelled is so in all blocks
 def _did_you_mean(word: str, known: tuple[str, ...]) -> str:
     names = {name.lower(): name for name in known}

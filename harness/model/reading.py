@@ -119,6 +119,8 @@ def _fault(model: type[BaseModel], data: Any, fault: Any, source: str) -> InputE
         message = _PLAIN[fault["type"]].format(**context).replace("'", '"')
     if fault["type"] == "extra_forbidden":
         return _unknown_field(model, fault["loc"], place, source)
+    if fault["type"] == "literal_error":
+        remedy = did_you_mean(str(fault["input"])[:MOST_SHOWN], re.findall("'([^']*)'", fault["ctx"]["expected"]))
     if fault["type"] in _SHAPES:
         remedy = remedy_at(model, fault["loc"])
     elif fault["type"] == "union_tag_not_found":

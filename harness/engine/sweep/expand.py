@@ -21,7 +21,7 @@ from harness.engine.sweep.study import MOST_RUNS, Distribution, Study
 from harness.model.assembly import Assembly
 from harness.model.build import Built, build
 from harness.model.content import hash_of
-from harness.model.errors import InputError, without_numbers
+from harness.model.errors import InputError, did_you_mean, without_numbers
 from harness.model.load_cases import load_cases_of
 from harness.model.method_registry import load_method
 from harness.model.reading import parse_wall, validate, wall_json
@@ -252,7 +252,8 @@ def _check(study: Study, runs: Sequence[SweepRun]) -> None:
     owners = {name: where[0] for group in study.axes() for name in group[0] if (where := setting_of(name)) is not None}
     for name, owner in owners.items():
         if owner not in study.methods:
-            raise InputError(f'"{name}" is a setting of {owner}, which the study does not run', "Name it in methods")
+            remedy = did_you_mean(owner, study.methods) or "Name it in methods"
+            raise InputError(f'"{name}" is a setting of {owner}, which the study does not run', remedy)
     seen: set[str] = set()
     looked_at: WallVariant | None = None
     classes = {name: load_method(name).Settings for name in study.methods if _has_settings(study, name, owners)}

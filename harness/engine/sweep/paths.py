@@ -6,14 +6,18 @@ import copy
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from itertools import islice
 from typing import Any
 
-from harness.model.errors import InputError
+from harness.model.errors import InputError, did_you_mean
 from harness.model.library import library
+from harness.model.wall import Wall
 
 _STEP = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)|\[(\d+)\]")
 _SETTING = "settings."
+_MOST_NUMBERS = 2000
+"""Numbers of a wall that a wrong name is compared with."""
 
 
 def setting_of(name: str) -> tuple[str, str] | None:
@@ -61,10 +65,33 @@ def has_number(data: Mapping[str, Any], name: str) -> bool:
     return name in _RULES or (isinstance(here, int | float) and not isinstance(here, bool))
 
 
+def number_meant(data: Mapping[str, Any], name: str) -> str:
+    """The question whether the name of another number in data of a wall was meant; empty where none is near."""
+    return did_you_mean(name, [*_RULES, *islice(_numbers(data, ""), _MOST_NUMBERS)])
+
+
+def _numbers(here: Any, path: str) -> Iterator[str]:
+    """Paths of the numbers below a place in data of a wall."""
+    if isinstance(here, dict):
+        for name, value in here.items():
+            yield from _numbers(value, f"{path}.{name}" if path else name)
+    elif isinstance(here, list):
+        for number, value in enumerate(here):
+            yield from _numbers(value, f"{path}[{number}]")
+    elif isinstance(here, int | float) and not isinstance(here, bool):
+        yield path
+
+
 def _put(data: dict[str, Any], path: str, value: Any) -> None:
     steps = [match.group(1) or int(match.group(2)) for match in _STEP.finditer(path)]
     if not steps or "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".") != path:
         raise InputError(f'"{path}" is no path', 'Write it as "loads.live.body[0].per_weight"', "vary")
+    if steps[0] not in Wall.model_fields:
+        names = [*_RULES, *library().settings, *Wall.model_fields]
+        remedy = (
+            f"{did_you_mean(path, names)} Give {', '.join(_RULES)} or a path into the wall, as pattern.count".strip()
+        )
+        raise InputError(f'a wall has no quantity "{path}"', remedy, "vary")
     here: Any = data
     for number, step in enumerate(steps[:-1]):
         following = steps[number + 1]
@@ -73,20 +100,21 @@ def _put(data: dict[str, Any], path: str, value: Any) -> None:
         elif isinstance(step, int) and isinstance(here, list) and step < len(here):
             here = here[step]
         else:
-            raise _nowhere(path)
+            raise _nowhere(data, path)
     last: Any = steps[-1]
     if isinstance(last, str) == isinstance(here, dict) and isinstance(here, dict | list) and _there(here, last):
         here[last] = value
     else:
-        raise _nowhere(path)
+        raise _nowhere(data, path)
 
 
 def _there(here: Any, step: str | int) -> bool:
     return isinstance(step, str) or step < len(here)
 
 
-def _nowhere(path: str) -> InputError:
-    return InputError(f'"{path}" leads nowhere in this wall', "`drystone expand` shows what a wall has", "vary")
+def _nowhere(data: Mapping[str, Any], path: str) -> InputError:
+    remedy = f"{number_meant(data, path)} `drystone expand` shows what a wall has".strip()
+    return InputError(f'"{path}" leads nowhere in this wall', remedy, "vary")
 
 
 def _number(name: str, value: Any) -> float:
