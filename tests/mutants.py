@@ -278,9 +278,6 @@ def survives(
     def forget() -> None:
         for kept in place.parent.glob(f"__pycache__/{place.stem}.*.pyc"):  # two changes in one second look alike
             kept.unlink()
-        if "@compiled" in source:  # numba keeps callers of a changed loop too
-            for kept in folder.rglob("*.nb[ic]"):
-                kept.unlink()
 
     def restore() -> None:
         shutil.copy2(ROOT / mutant.path, place)
