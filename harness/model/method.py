@@ -54,7 +54,7 @@ class Finding(StrEnum):
 
 def none_above(upper: float) -> str:
     """What an upper bound says, for the end of a sentence that finds no collapse state."""
-    return f"no collapse state lies above {upper:.7g}"
+    return f"above {upper:.7g} no equilibrium within yield exists, so the wall moves there at the latest"
 
 
 @dataclass

@@ -13,7 +13,6 @@ from functools import partial
 
 import numpy as np
 
-from harness.model.assembly import FloatArray
 from harness.model.deadline import STOPPED, best_so_far
 from harness.model.errors import first_few
 from methods.springs.model.factor import Factor, SingularTangent
@@ -21,8 +20,8 @@ from methods.springs.model.gap_law import OPEN, SLIP_PLUS
 from methods.springs.model.wall_model import WallModel
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.load_path import follow
-from methods.springs.path.path_record import PathEnd, PathRecord, PathStep
-from methods.springs.path.plateau import PlateauState, finish
+from methods.springs.path.path_record import PathEnd, PathRecord, PathSnapshot, PathStep
+from methods.springs.path.plateau import IDLE, PlateauState, finish, share_of_work
 from methods.springs.rest.equilibrium import doubled, equilibrium, first_step
 from methods.springs.rest.newton import Equilibrium
 from methods.springs.rest.pseudo_transient import PseudoTransient
@@ -244,19 +243,24 @@ def _followed(follower: PathFollower, plan: HistoryPlan, record: PathRecord) -> 
     if state is not None and state.multiplier < 0.0:
         state, end, sentence = None, PathEnd.RUNS_DOWN, _BELOW_ZERO
     elif state is None and end == PathEnd.PLATEAU:
-        sentence = _not_collapse(model, follower.present().velocity)
+        sentence = _not_collapse(model, follower.present())
     if plan.committed_up_to < np.inf:
         sentence += f"; plastic slip updated up to {plan.committed_up_to:.4g} only: later updates lost the path"
     return HistoryResult(plan, end, sentence, record, state, way.commits, way.residual)
 
 
-def _not_collapse(model: WallModel, velocity: FloatArray) -> str:
-    """Why a last piece that moves along velocities (N,) is no collapse state."""
-    moving = model.moving_blocks(model.block_displacements(velocity))
+def _not_collapse(model: WallModel, last: PathSnapshot) -> str:
+    """Why a last piece that moves is no collapse state."""
+    moving = model.moving_blocks(model.block_displacements(last.velocity))
     if model.idle_blocks.issuperset(moving):
         return (
             f"blocks without weight or load move freely ({first_few(moving, 8)}), in an undetermined direction: "
             "give every block a weight, however small"
+        )
+    if abs(share_of_work(model.live, last.velocity)) <= IDLE:
+        return (
+            f"at {last.multiplier:.7g} times the live load the wall moves by a mechanism on which that does no work, "
+            "as where it takes pressure off a joint that slides: it is no collapse state"
         )
     return "the last piece is a mechanism, but its forces do not pass the check of an exact collapse state"
 

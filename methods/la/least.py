@@ -146,8 +146,8 @@ def _stopped_before_the_first(search: Search, associated: CollapseState, toleran
     problem = search.problem
     greatest = problem.to_multiplier(associated.multiplier)
     sentence = (
-        f"No collapse state without dilatancy is known yet: the search was {STOPPED}; {none_above(greatest)}, at which "
-        "the wall collapses under associated flow."
+        f"No collapse state without dilatancy is known yet: the search was {STOPPED}; {none_above(greatest)}, by "
+        "associated flow."
     )
     details = _details(search, None, None) | {"stopped_by_limit": True}
     return collapse_answer(
@@ -164,7 +164,7 @@ def _nothing_found(search: Search) -> Answer:
     bound = f"; {none_above(details['associated'])}" if "associated" in details else ""
     return not_converged(
         "No contact forces fit the mechanisms that were tried, and no path of the wall with springs in its joints came "
-        f"to a mechanism, so no collapse state is known{bound}.",
+        f"to a mechanism on which the live load does work, so no collapse state is known{bound}.",
         search.budget.spent.newton_steps,
         details,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from pathlib import Path
 
@@ -22,6 +23,34 @@ from tests.la.bodies import column, running_bond
 from tests.walls import assembly, stack, wedge
 
 CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.mark.parametrize("pull", [1.0, -1.0])
+def test_a_block_on_a_slope_that_is_pulled_off_its_plane_slides_without_work_of_the_live_load(pull: float):
+    """It slides at cos(a) - sin(a) / mu, without work; where it is pressed onto its plane nothing moves it."""
+    slope, friction = math.atan(0.3), 0.4
+    c, s = math.cos(slope), math.sin(slope)
+
+    def turned(*points: tuple[float, float]) -> list[list[float]]:
+        return [[c * x - s * y, s * x + c * y] for x, y in points]
+
+    plane = {"id": "plane", "polygon": turned((-1, -1), (2, -1), (2, 0), (-1, 0)), "fixed": True}
+    block = {"id": "block", "polygon": turned((0, 0), (1, 0), (1, 0.2), (0, 0.2)), "weight": 1.0}
+    away = {"block": "block", "at": turned((0.5, 0.1))[0], "force": turned((0.0, pull))[0]}
+    data = {"format": "wall/1", "friction": friction, "blocks": [plane, block], "loads": {"live": {"points": [away]}}}
+    wall = build(Wall.model_validate(data)).assembly
+    answers = {name: load_method(name).solve(wall, load_method(name).Settings()) for name in ("la", "fe", "de")}
+    greatest = load_method("la-associated").solve(wall, AssociatedSettings())
+    if pull < 0.0:
+        assert {each.finding for each in (*answers.values(), greatest)} == {Finding.UNBOUNDED}
+        return
+    assert greatest.multiplier == pytest.approx(c - s / friction, rel=1e-12)
+    assert answers["de"].bracket == pytest.approx((c - s / friction,) * 2, abs=1e-4)
+    assert {answers[name].finding for name in ("la", "fe")} == {Finding.NONE}
+    assert "above 0.2394566 no equilibrium within yield exists, so the wall moves there" in answers["la"].sentence
+    assert "at 0.2394566 times the live load the wall moves by a mechanism on which that does no work" in (
+        answers["fe"].sentence
+    )
 
 
 def wall_of(case: str) -> Assembly:

@@ -78,14 +78,15 @@ def test_the_upper_bound_is_an_associated_maximum_that_was_found_and_not_rejecte
 def test_a_run_without_an_answer_tells_the_upper_bound_that_another_method_found():
     best = found("la-associated", Finding.COLLAPSES).model_copy(update={"flow": "associated", "multiplier": 0.75})
     lost = samples.failed(CASE, "fe", Status.TIMEOUT, "It was stopped at the limit of 2 s.")
-    own = samples.failed(CASE, "la", Status.NOT_CONVERGED, "nothing; no collapse state lies above 0.8")
+    own = samples.failed(CASE, "la", Status.NOT_CONVERGED, "nothing; above 0.8 no equilibrium within yield exists")
     own.details["associated"] = 0.8
     refused = samples.failed(CASE, "de", Status.REFUSED, "de takes no mortar.")
     rows = [lost, own, refused, best]
     runs = [Run(CASE, row.method, {}, Limits()) for row in rows]
     (told,) = gather([CASE], runs, rows)
     assert [row.sentence for row in told.results] == [
-        "It was stopped at the limit of 2 s; no collapse state lies above 0.75, by la-associated",
+        "It was stopped at the limit of 2 s; above 0.75 no equilibrium within yield exists, so the wall moves there at "
+        "the latest, by la-associated",
         *(row.sentence for row in rows[1:]),
     ]
     (alone,) = gather([CASE], runs[:3], rows[:3])
