@@ -121,6 +121,7 @@ class Traits(BaseModel):
         any_dilatancy: it follows the dilatancy that a wall gives its joints; other methods refuse such a wall.
         any_strength: it takes joints with cohesion and tensile strength; other methods refuse such a wall.
         any_brittle: it takes joints that lose their strength once they have moved; other methods refuse such a wall.
+        brittle_alone: it takes such joints only where none dilates or crushes.
         any_bars: it takes ties, props and passive fill; other methods refuse such a wall.
         any_crushing: it takes joints with compressive strength; other methods refuse such a wall.
         any_settlements: it takes supports that move, and finds what they bear; other methods refuse such a wall.
@@ -144,6 +145,7 @@ class Traits(BaseModel):
     any_dilatancy: bool = False
     any_strength: bool = False
     any_brittle: bool = False
+    brittle_alone: bool = False
     any_bars: bool = False
     any_crushing: bool = False
     any_settlements: bool = False

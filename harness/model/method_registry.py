@@ -33,33 +33,38 @@ def check_takes(method: Method, assembly: Assembly) -> None:
         raise InputError(
             f"{method.name} takes no dilatancy; the joint between {between(joint)} has the dilatancy "
             f"{law.dilatancy[joint]:g}",
-            f"Take a method that follows dilatancy ({', '.join(methods_with('any_dilatancy'))}), or leave it out",
+            f"Take a method that follows dilatancy ({_that_take(assembly)}), or leave it out",
         )
     if assembly.strong and not method.traits.any_strength:
         raise InputError(
             f"{method.name} takes dry joints only; that between {between(int(np.argmin(law.dry)))} has cohesion or "
             "tensile strength",
-            f"Take a method that follows the strength of joints ({', '.join(methods_with('any_strength'))}), or leave "
+            f"Take a method that follows the strength of joints ({_that_take(assembly)}), or leave "
             "cohesion and tensile strength out",
         )
     if assembly.breaks and not method.traits.any_brittle:
         raise InputError(
             f"{method.name} takes joints that keep their strength; that between "
             f"{between(int(np.argmax(assembly.brittle)))} is brittle",
-            f"Take a method that follows brittle joints ({', '.join(methods_with('any_brittle'))}), or leave out "
-            '"after": "residual"',
+            f'Take a method that follows brittle joints ({_that_take(assembly)}), or leave out "after": "residual"',
+        )
+    if assembly.breaks and method.traits.brittle_alone and (assembly.dilates or assembly.crushes):
+        besides = "dilatancy" if assembly.dilates else "compressive strength"
+        raise InputError(
+            f"{method.name} takes brittle joints without {besides}; that between "
+            f"{between(int(np.argmax(assembly.brittle)))} is brittle, and the wall has {besides}",
+            f"Take a method that follows both ({_that_take(assembly)}), or leave out one of the two",
         )
     if len(assembly.bars) and not method.traits.any_bars:
         raise InputError(
             f"{method.name} takes no ties, props and passive fill; the wall has {first_few(assembly.bars.names, 4)}",
-            f"Take a method that follows bars ({', '.join(methods_with('any_bars'))}), or leave them out",
+            f"Take a method that follows bars ({_that_take(assembly)}), or leave them out",
         )
     if assembly.crushes and not method.traits.any_crushing:
         raise InputError(
             f"{method.name} takes joints that do not crush; that between {between(int(np.argmin(assembly.crushing)))} "
             "has a compressive strength",
-            f"Take a method that follows crushing (--method {methods_with('any_crushing')[0]}; all of them: "
-            f"{', '.join(methods_with('any_crushing'))}), or leave it out",
+            f"Take a method that follows crushing ({_that_take(assembly)}), or leave it out",
         )
     if np.any(assembly.support_motion) and not method.traits.any_settlements:
         block = int(np.argmax(np.any(assembly.support_motion, axis=1)))
@@ -67,6 +72,20 @@ def check_takes(method: Method, assembly: Assembly) -> None:
             f"{method.name} takes supports at rest only; {assembly.block_ids[block]} moves",
             "Ask `drystone reaction`, or leave the settlements out",
         )
+
+
+def _that_take(assembly: Assembly) -> str:
+    """Names of the installed methods that take all joints and bars of a wall, in words."""
+    needed = {
+        "any_dilatancy": assembly.dilates,
+        "any_strength": assembly.strong,
+        "any_brittle": assembly.breaks,
+        "any_bars": len(assembly.bars) > 0,
+        "any_crushing": assembly.crushes,
+    }
+    found = [set(methods_with(trait)) for trait, there in needed.items() if there]
+    alone = set(methods_with("brittle_alone")) if assembly.breaks and (assembly.dilates or assembly.crushes) else set()
+    return ", ".join(sorted(set.intersection(*found) - alone)) or "there is none for all of this wall"
 
 
 def method_names() -> list[str]:

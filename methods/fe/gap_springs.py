@@ -73,12 +73,6 @@ class GapSprings(Solver):
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
-        if assembly.breaks and assembly.dilates:
-            return refused("brittle joints that dilate are not followed: leave out the dilatancy, or the brittleness")
-        if assembly.breaks and assembly.crushes:
-            return refused(
-                "brittle joints that crush are not followed: leave out the compressive strength, or the brittleness"
-            )
         if assembly.breaks:
             events = _FEWEST + _FIRST * settings.points * assembly.n_interfaces
             most = settings.max_events or events

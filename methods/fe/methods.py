@@ -19,6 +19,7 @@ FE = Listed(
         any_strength=True,
         any_bars=True,
         any_brittle=True,
+        brittle_alone=True,
         any_crushing=True,
         colour="#1f4e79",
         marker="o",

@@ -17,8 +17,9 @@ from harness.engine.judge import answered
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.case import case_folders, read_case, shipped_cases
+from harness.model.errors import InputError
 from harness.model.method import Finding, Status
-from harness.model.method_registry import load_method
+from harness.model.method_registry import check_takes, load_method
 from harness.model.result import Result
 from harness.model.wall import Wall
 from methods.springs.model.factor import make_factor
@@ -168,9 +169,8 @@ def test_updates_of_the_plastic_slip_are_refused_where_joints_dilate():
 
 def test_brittle_joints_that_dilate_are_refused():
     wall = dilatant(assembly(stack(2), 0.5, cohesion=2.0, after="residual"), 0.5)
-    result, _ = answered(load_method("fe"), wall)
-    assert result.status is Status.REFUSED
-    assert "brittle joints that dilate" in result.sentence
+    with pytest.raises(InputError, match="fe takes brittle joints without dilatancy; that between"):
+        check_takes(load_method("fe"), wall)
 
 
 @pytest.mark.slow

@@ -12,8 +12,9 @@ import pytest
 from harness.engine.judge import answered, judge
 from harness.model.assembly import Assembly
 from harness.model.build import build
+from harness.model.errors import InputError
 from harness.model.method import Answer, Finding, Status
-from harness.model.method_registry import load_method
+from harness.model.method_registry import check_takes, load_method
 from harness.model.result import Result, residual_of, result_of
 from harness.model.wall import Wall
 from methods.numerics.pressed_state import exact_state, moving_rates
@@ -158,9 +159,14 @@ def test_load_borne_by_joints_that_do_not_crush_has_no_end():
 
 def test_brittle_joints_that_crush_are_refused():
     wall = assembly(stack(1, 0.4, 2.0), 1.0, cohesion=8.0, compressive_strength=200.0, after="residual")
-    result, _ = answered(load_method("fe"), wall)
-    assert result.status is Status.REFUSED
-    assert "brittle joints that crush" in result.sentence
+    with pytest.raises(
+        InputError, match="fe takes brittle joints without compressive strength; that between"
+    ) as refused:
+        check_takes(load_method("fe"), wall)
+    assert "(la, la-associated, la-associated-cvxpy)" in refused.value.remedy
+    with pytest.raises(InputError, match="de takes joints that keep their strength") as refused:
+        check_takes(load_method("de"), wall)
+    assert "(la, la-associated, la-associated-cvxpy)" in refused.value.remedy, "fe would refuse it too"
 
 
 def test_components_are_put_together_with_forces_within_their_stress_blocks():
