@@ -32,6 +32,8 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
         end: of its own interior point.
     """
 
+    gives_most = True
+
     def __init__(self, end: EndOfPath = EndOfPath()) -> None:
         self._end = end
 
@@ -46,6 +48,8 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
 
 class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
     """The same linear programme written in cvxpy, to be read beside the formulas (`la-associated-cvxpy`)."""
+
+    gives_most = True
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""

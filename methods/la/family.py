@@ -54,13 +54,18 @@ def _proved_of_all(answer: Answer, parts: Sequence[Answer]) -> Answer:
 class LimitAnalysisFamily(Solver):
     """Base of the solvers: a wall that falls under its dead load, or has no live load, is answered here."""
 
+    gives_most = False
+    """Whether it answers with the most that statics allows."""
+
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer from those for the independent components of the wall, with what is proved of all of them."""
         return self._of_wall(assembly, settings)
 
     def _of_wall(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`; where joints have strength, with the residual answer."""
-        return plastic_and_residual(assembly, lambda wall: self._of_components(wall, settings, answer))
+        return plastic_and_residual(
+            assembly, lambda wall: self._of_components(wall, settings, answer), most=self.gives_most
+        )
 
     def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
         """As `solve`, each component answered by `answer`, by default the method's own."""

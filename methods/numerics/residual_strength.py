@@ -17,18 +17,19 @@ from harness.model.result import bears_less_with_strength
 from methods.numerics.claims import analysed
 
 
-def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
+def plastic_and_residual(assembly: Assembly, solve: Callable[[Assembly], Answer], *, most: bool = False) -> Answer:
     """The answer for a wall, and where its joints have strength, that for the wall without it too.
 
     Args:
         assembly: the wall; solve: answers for a wall.
+        most: whether it answers with the most that statics allows, as an associated maximum.
     """
     plastic = solve(assembly)
     if not assembly.strong or plastic.status is not Status.OK:
         return plastic
     said = "The time was over before the wall without strength was solved."
     residual = best_so_far(lambda: solve(assembly.residual), lambda: Answer(Status.NOT_CONVERGED, Finding.NONE, said))
-    return _between(assembly, plastic, residual) if assembly.breaks else _with_residual(plastic, residual)
+    return _between(assembly, plastic, residual, most) if assembly.breaks else _with_residual(plastic, residual)
 
 
 def by_component(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
@@ -58,7 +59,7 @@ def _with_residual(plastic: Answer, residual: Answer) -> Answer:
     return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
 
 
-def _between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
+def _between(assembly: Assembly, plastic: Answer, residual: Answer, most: bool) -> Answer:
     """One of the two answers for a wall with brittle joints, with the other: a safe and an upper estimate.
 
     An associated maximum is an upper bound if its joints keep their strength, so that is the one returned, with
@@ -67,24 +68,28 @@ def _between(assembly: Assembly, plastic: Answer, residual: Answer) -> Answer:
     broken wall lies lower say nothing of states in which joints are whole, and are left out.
     """
     number = int(assembly.brittle.sum())
-    joints = f"{number} of the joints {'is' if number == 1 else 'are'} brittle"
-    if plastic.flow == "associated" or residual.status is not Status.OK:
+    because = f"Because {number} of the joints {'is' if number == 1 else 'are'} brittle"
+    follows = "" if assembly.crushes or assembly.dilates else "; `fe` follows how they break"
+    if most or residual.status is not Status.OK:
         said = _residual_in_words(residual, "the strength of brittle joints")
         sentence = (
             f"{as_sentence(plastic.sentence)} That is as if all joints kept their strength, an upper estimate; {said}. "
-            f"Because {joints}, the multiplier of the wall lies between the least residual one (`la`) and this; `fe` "
-            "follows how they break."
+            f"{because}, the answer of the wall lies between the least residual one (`la`) and this{follows}."
         )
         return replace(plastic, sentence=sentence, details=plastic.details | {"without_strength": _as_detail(residual)})
     kept = {name: value for name, value in residual.details.items() if name not in _OF_PROOFS}
-    upper = f"{plastic.multiplier:.7g}" if plastic.multiplier is not None else f'the answer "{plastic.finding}"'
     estimate, this = "a safe estimate", "this"
     if bears_less_with_strength(plastic, residual):
-        estimate, this = "which is no safe estimate", "that"
+        estimate, this = "no safe estimate", "that"
+    known = "upper bound" if plastic.flow == "associated" else "least known"
+    whole = f"the {known} would be {plastic.multiplier:.7g}" if plastic.multiplier is not None else (
+        f"the answer would be: {plastic.finding}"
+    )  # fmt: skip
+    between = f" {because}, the answer of the wall lies between {this} and that of `la-associated`{follows}."
+    broken = as_sentence(residual.sentence)
     sentence = (
-        f"{as_sentence(residual.sentence)} That is with all brittle joints broken, {estimate}; if all joints kept "
-        f"their strength, the least known would be {upper}. Because {joints}, the multiplier of the wall lies between "
-        f"{this} and the maximum of `la-associated`; `fe` follows how they break."
+        f"With all brittle joints broken, {estimate}: {broken[:1].lower()}{broken[1:]} If all joints kept their "
+        f"strength, {whole}.{'' if plastic.finding is residual.finding is Finding.FALLS else between}"
     )
     own = {"broken": np.flatnonzero(assembly.brittle).tolist(), "with_strength": _as_detail(plastic)}
     return replace(residual, sentence=sentence, details=kept | own)

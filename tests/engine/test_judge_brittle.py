@@ -183,3 +183,22 @@ def test_a_fall_after_a_break_is_shown_only_where_the_joints_could_not_bear_the_
     answer.details = {"broken": [0], "broken_at": [0.0]}
     result = result_of(answer, wall, case="glued", method="own", family="own")
     assert judge(wall, result, 1e-8).accepted is shown
+
+
+@pytest.mark.parametrize("loads", [{}, {"live": {"body": [{"per_weight": [1, 0]}]}}])
+def test_two_voussoirs_that_stand_on_whole_joints_alone_are_not_said_to_fall(loads: dict[str, Any]):
+    """Their thrust is flatter than the friction: they fall once the joints have broken, which is not shown."""
+    ring = {"type": "ring", "inner_radius": 1.0, "outer_radius": 1.05, "count": 2, "angles": [150, 30]}
+    strength = {"cohesion": 2.0, "tensile_strength": 1.0, "after": "residual"}
+    wall = assembly(ring, 0.1, loads=loads, **strength)
+    safe, judgement = answered(load_method("la"), wall)
+    assert safe.sentence.startswith(
+        "With all brittle joints broken, a safe estimate: the wall falls under its dead load"
+    )
+    assert (safe.finding, judgement.accepted) == (Finding.FALLS, None)
+    whole, judgement = answered(load_method("la-associated"), wall)
+    assert (whole.finding, judgement.accepted) == (Finding.COLLAPSES if loads else Finding.STANDS, True)
+    assert "That is as if all joints kept their strength, an upper estimate" in whole.sentence
+    followed, judgement = answered(load_method("fe"), wall)
+    assert (followed.finding, judgement.accepted) == (Finding.COLLAPSES if loads else Finding.STANDS, True)
+    assert 0.0 < (followed.multiplier or 1e-3) < (whole.multiplier or 1.0)
