@@ -80,7 +80,7 @@ def _between(assembly: Assembly, plastic: Answer, residual: Answer, most: bool) 
     kept = {name: value for name, value in residual.details.items() if name not in _OF_PROOFS}
     estimate, this = "a safe estimate", "this"
     if bears_less_with_strength(plastic, residual):
-        estimate, this = "no safe estimate", "that"
+        estimate, this = "which is no safe estimate", "that"
     known = "upper bound" if plastic.flow == "associated" else "least known"
     whole = f"the {known} would be {plastic.multiplier:.7g}" if plastic.multiplier is not None else (
         f"the answer would be: {plastic.finding}"
