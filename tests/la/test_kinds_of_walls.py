@@ -16,7 +16,7 @@ from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.wall import Wall
 from methods.la.associated import AssociatedLimitAnalysis
-from methods.la.literature.solvers import FromFiniteElements
+from methods.la.literature.cooperation import FromFiniteElements
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, FromFeSettings, SearchSettings
 from tests.la.bodies import column, running_bond

@@ -11,7 +11,8 @@ from harness.model.build import build
 from harness.model.method import Answer, Finding, Status
 from harness.model.wall import Wall
 from methods.la.associated import AssociatedLimitAnalysis, AssociatedLimitAnalysisCvxpy
-from methods.la.literature.solvers import PaperProgramme, TrescaSequence
+from methods.la.literature.paper_programme import PaperProgramme
+from methods.la.literature.tresca import TrescaSequence
 from methods.la.search import LimitAnalysis
 from methods.la.settings import (
     AssociatedSettings,

@@ -20,12 +20,20 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 
-from harness.model.assembly import FloatArray, IntArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.deadline import Deadline, OutOfTime
 from harness.model.errors import optional
 from harness.model.joint_law import block_diagonal
+from harness.model.method import Answer, Finding, Status
+from methods.la.answers import NO_MOTION, collapse_answer, not_converged, unbounded_answer
+from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.numerics.failures import sparse_lu
+from methods.la.core.state import polished
+from methods.la.family import LimitAnalysisFamily
+from methods.la.literature.cooperation import finite_element_answer, without_start
+from methods.la.methods import LA_PAPER
+from methods.la.sources.search import Search
+from methods.numerics.failures import NumericalFailure, sparse_lu
 
 _FASTEST = 1e3
 """Bound on the rates at a mean live displacement of one; without it Ipopt's tolerances admit rates of any size."""
@@ -47,7 +55,7 @@ _ENDS = {
 
 
 @dataclass(frozen=True)
-class PaperResult:
+class _PaperResult:
     """Scaled forces (m, 3), multiplier and rates (m, 4), the number of unknowns, iterations and Ipopt's last word."""
 
     forces: FloatArray
@@ -94,9 +102,9 @@ def _determined_system(problem: Problem) -> IntArray:
     return np.array([best[(min(k, int(before[k])), max(k, int(before[k])))] for k in range(1, size)])
 
 
-def solve_paper_programme(
+def _solve_paper_programme(
     problem: Problem, start_forces: FloatArray | None, max_iterations: int, epsilons: tuple[float, ...]
-) -> PaperResult:
+) -> _PaperResult:
     """A local solution of the programme.
 
     Args:
@@ -137,7 +145,7 @@ def solve_paper_programme(
         unknowns, status = _solved(solver, unknowns, problem.deadline)
         iterations += max(counted, default=0)
         message = _ENDS.get(status, f"status {status}")
-    return PaperResult(
+    return _PaperResult(
         programme.forces(unknowns), float(unknowns[0]), programme.rates(unknowns), len(unknowns), iterations, message
     )
 
@@ -291,4 +299,58 @@ def _programme_of(problem: Problem) -> _Programme:
         sp.csr_array(transfer @ m1 - m2),
         (inverse.T @ problem.live) @ m1 / problem.live_work,
         problem.live_work,
+    )
+
+
+class PaperProgramme(LimitAnalysisFamily):
+    """The paper's own programme (8)-(11) in reduced unknowns, by Ipopt (`la-paper`)."""
+
+    def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
+        """A local solution of the programme, made exact on the mechanism it ends at."""
+        if assembly.n_free > settings.max_blocks:
+            return Answer(
+                Status.REFUSED,
+                Finding.NONE,
+                f"The programme of the paper is not reliable above {settings.max_blocks} blocks; "
+                f"this wall has {assembly.n_free}. Use la, or raise max_blocks.",
+            )
+        start = None
+        if settings.start == "fe":
+            given = finite_element_answer(assembly, "fe")
+            if given.finding is not Finding.COLLAPSES or given.forces is None:
+                return without_start(given)
+            start = given.forces / problem.unit_force
+        try:
+            result = _solve_paper_programme(problem, start, settings.max_iterations, settings.epsilons)
+        except (ValueError, NumericalFailure) as error:
+            return not_converged(f"The programme could not be set up or solved: {error}")
+        return _paper_answer(problem, newton, result, settings.start, LA_PAPER.tolerance)
+
+
+def _paper_answer(problem: Problem, newton: NewtonMatrix, result: _PaperResult, start: str, tolerance: float) -> Answer:
+    """The exact state on the mechanism that the programme ends at, with what the programme itself said."""
+    details: dict[str, Any] = {
+        "unknowns": result.unknowns,
+        "programme_value": result.multiplier * problem.unit_multiplier,
+        "solver_message": result.message,
+        "start": start,
+    }
+    if not (np.all(np.isfinite(result.forces)) and np.all(np.isfinite(result.rates))):
+        return not_converged(f"Ipopt ended with {result.message}.", result.iterations, details)
+    search = Search(problem, newton)
+    state = search.nearest_state(problem.slacks(result.forces), result.rates)
+    if state is None and not search.finds_motion():
+        return unbounded_answer(NO_MOTION, result.iterations, details)
+    if state is None:
+        return not_converged(
+            f"Ipopt ended with {result.message} and no collapse state lies near its end.", result.iterations, details
+        )
+    multiplier = problem.to_multiplier(state.multiplier)
+    return collapse_answer(
+        problem,
+        polished(problem, newton, state),
+        f"The programme of the paper leads to a collapse state at {multiplier:.7g}, a local solution.",
+        tolerance,
+        result.iterations,
+        details,
     )
