@@ -129,7 +129,7 @@ class Result(Record):
 
     def _repr_html_(self) -> str:
         from reports.drawing.mechanism_drawing import mechanism_drawing
-        from reports.notebook import html
+        from reports.drawing.svg import html
 
         drawn = mechanism_drawing(self._wall.case, self) if self.mechanism is not None else None
         return html(f"{self._wall.name}, {self.method}: {self.sentence} ({self.judge.outcome})", drawn)

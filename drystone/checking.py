@@ -46,8 +46,8 @@ class Check:
         return pd.DataFrame(self.lines).drop(columns="settings", errors="ignore")
 
     def _repr_html_(self) -> str:
+        from reports.drawing.svg import html
         from reports.labels.numbers import met
-        from reports.notebook import html
 
         shown = self.to_pandas()[["case", "reference", "method", "value", "relation", "expected", "verdict"]]
         held = sum(line["verdict"] == "agrees" for line in self.lines)

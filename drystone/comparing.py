@@ -80,7 +80,7 @@ class Comparison:
         return multipliers_figure(self.run)
 
     def _repr_html_(self) -> str:
-        from reports.notebook import html
+        from reports.drawing.svg import html
 
         return html(self.run.title, table=str(self.multipliers().to_html(na_rep="-", float_format="{:.6g}".format)))
 

@@ -111,7 +111,7 @@ class Sweep:
         return target
 
     def _repr_html_(self) -> str:
-        from reports.notebook import html
+        from reports.drawing.svg import html
 
         return html(self.study.title, table=str(self.tables["quantiles"].to_html(float_format="{:.6g}".format)))
 

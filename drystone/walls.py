@@ -94,8 +94,8 @@ class Wall:
         return wall_figure(self.case.built, self.title)
 
     def _repr_html_(self) -> str:
+        from reports.drawing.svg import html
         from reports.drawing.wall_drawing import wall_drawing
-        from reports.notebook import html
 
         free, joints = self.assembly.n_free, self.assembly.n_interfaces
         return html(f"{self.title}: {free} free blocks, {joints} interfaces", wall_drawing(self.case))

@@ -1,4 +1,4 @@
-"""Commands that run many methods and report: compare, report."""
+"""Commands that run many methods and report: compare, report, learn."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import click
 from drystone.cli import terminal
 from drystone.cli.junit import tests_of_comparison, write_junit
 from drystone.cli.options import (
+    OUTPUT,
     as_loaded,
     both_signs_flag,
     cases_argument,
@@ -204,3 +205,28 @@ def _appendix(wall: str, folder: Path, store: Path) -> None:
         say(f"drystone: {error}", err=True)
     else:
         say(f"Appendix: {page.with_suffix('.pdf')}")
+
+
+_TAUGHT = ("wall-21-friction-030", "wall-21-friction-050", "wall-21", "wall-21-friction-075", "wall-21-friction-100")
+"""Walls that differ in friction alone, from sliding to overturning in steps."""
+
+
+@click.command()
+@click.option("-o", "--output", type=OUTPUT, default=Path("out/learn.html"), show_default=True)
+@jobs_option
+@store_option
+@catching
+def learn(output: Path, jobs: int, store: Path) -> None:
+    """Make a page for teaching: the paper's block with sliders, and the 21-brick wall over friction.
+
+    Runs that the store does not have are made first; the page works offline.
+    """
+    from reports.page.learn import write_learn
+
+    chosen = find_cases(("single-block", *_TAUGHT), None, ())
+    runs = [planned for case in chosen for planned in plan_case(case, list(library().methods.compare), Limits())]
+    command, title = shlex.join(["drystone", *sys.argv[1:]]), "Why three methods differ"
+    with open_store(store) as opened, terminal.progress_bar(len(runs), quiet=False) as progress:
+        made = compared(title, command, chosen, runs, opened, LocalExecutor(jobs), progress=progress, certified=False)
+    write_learn(made, output)
+    say(f"Page: {output}")

@@ -20,7 +20,7 @@ COMMANDS = {
     "study": ("sweep", "study", "List the studies of Drystone, or print one."),
     "sweep": ("sweep", "sweep_", "Run a study: many walls, many settings."),
     "store": ("sweep", "store_", "Merge result stores."),
-    "learn": ("learn", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
+    "learn": ("compare", "learn", "Make a page for teaching: a block with sliders, a wall over friction."),
     "bench": ("bench", "bench_", "Run methods on a frozen set of walls: success, error, CPU time."),
     "report": ("compare", "report", "Rebuild the report of the last comparison."),
     "check": ("check", "check", "Compare the methods with their checked references."),

@@ -26,7 +26,7 @@ from harness.conformance.walls import (
 )
 from harness.engine.isolate import run_isolated
 from harness.engine.judge import answered
-from harness.engine.resource_use import cpu_seconds
+from harness.engine.processes import cpu_seconds
 from harness.engine.symmetry import VIEWS
 from harness.engine.worker import Task
 from harness.model.answer_check import AnswerFault

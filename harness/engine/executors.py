@@ -13,7 +13,7 @@ from typing import Protocol
 
 from harness.engine import preload
 from harness.engine.isolate import LOOK_SECONDS, Child, Retry, own_context, start_context
-from harness.engine.resource_use import cpu_seconds
+from harness.engine.processes import cpu_seconds
 from harness.engine.run import TimedResult, measured_result
 from harness.engine.worker import Task, loaded, solved
 from harness.model.answer_check import checked

@@ -22,8 +22,7 @@ from types import ModuleType
 from typing import Any
 
 from harness.engine import preload, worker
-from harness.engine.left_over import end_descendants
-from harness.engine.resource_use import resource_use
+from harness.engine.processes import end_descendants, resource_use
 from harness.engine.run import Limits, TimedResult, measured_result
 from harness.engine.threads import pin
 from harness.engine.worker import Task

@@ -27,19 +27,17 @@ from typing import Any
 
 import numpy as np
 
-from harness.engine.left_over import adopt_orphans, end_left_over
-from harness.engine.resource_use import cpu_seconds
+from harness.engine.processes import adopt_orphans, cpu_seconds, end_left_over
 from harness.model.answer_check import AnswerFault, checked, encodable
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline, OutOfTime, answering_by
 from harness.model.details import MISSING_PACKAGE
 from harness.model.errors import InputError, MissingPackage, visible
-from harness.model.foreign.program_method import method_of
+from harness.model.foreign.program_method import method_of, running_in
 from harness.model.foreign.register import Program
 from harness.model.method import Answer, Finding, Method, Settings, Status, Traits, allowing
 from harness.model.method_registry import check_takes, load_method, prepared
 from harness.model.reading import validate
-from harness.model.run_context import running_in
 
 _LAST_WORDS = (0.05, 5.0)
 """Share of the time limit, and at most so many seconds, that are left to a method to say how far it came."""

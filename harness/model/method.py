@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -15,8 +17,6 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import OutOfTime as OutOfTime
-from harness.model.run_context import allowing as allowing
-from harness.model.run_context import processes_allowed as processes_allowed
 
 
 class Status(StrEnum):
@@ -271,3 +271,21 @@ answers are about other questions than the multiplier."""
 def method_points() -> tuple[EntryPoint, ...]:
     """The entry points of all installed methods; looked for once in a process."""
     return tuple(point for group in (GROUP, UNLISTED, OF_COMMANDS) for point in entry_points(group=group))
+
+
+_processes: ContextVar[int] = ContextVar("processes", default=1)
+
+
+def processes_allowed() -> int:
+    """Processes that a run may use side by side, one unless the user allows more; its answer is the same with any."""
+    return _processes.get()
+
+
+@contextmanager
+def allowing(processes: int) -> Iterator[None]:
+    """Allow the runs made inside so many processes each."""
+    token = _processes.set(processes)
+    try:
+        yield
+    finally:
+        _processes.reset(token)

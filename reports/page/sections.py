@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from markupsafe import Markup
 
+from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
 from harness.model.details import AnswerDetails
@@ -16,7 +17,6 @@ from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.svg import inline
 from reports.findings.agreement import Agreement
-from reports.findings.bars import BarRow, bar_rows, bars_text
 from reports.findings.joints import joints_in_words, motion, open_with_force
 from reports.findings.reasons import reasons
 from reports.findings.strength import StrengthRow, strength_rows, strength_text
@@ -78,7 +78,7 @@ class CaseSection:
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
     strength: list[StrengthRow] = field(default_factory=list)
-    bars: list[BarRow] = field(default_factory=list)
+    bars: list[_BarRow] = field(default_factory=list)
 
     @property
     def families(self) -> list[FoldedPanel]:
@@ -167,7 +167,7 @@ def case_section(
         through=_through(item),
         facts=_facts(item.case),
         strength=strength_rows(item),
-        bars=bar_rows(item),
+        bars=_bar_rows(item),
         warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
         panels=panels,
@@ -187,7 +187,7 @@ def _facts(case: Case) -> list[tuple[str, str]]:
     """The facts of a case, with the strength of its joints where they have any, and with its ties and props."""
     more = {
         "Strength of joints": strength_text(case.assembly, case.wall.units.force),
-        "Ties and props": bars_text(case),
+        "Ties and props": _bars_text(case),
     }
     return wall_summary(case) + [(name, text) for name, text in more.items() if text]
 
@@ -250,3 +250,45 @@ def _forces_are(result: Result) -> str:
     if result.forces_multiplier is not None and at != numbers.multiplier(result.multiplier):
         return f"contact forces at {at}"
     return "contact forces at collapse"
+
+
+@dataclass(frozen=True)
+class _BarRow:
+    """The force of one bar by one method."""
+
+    method: str
+    bar: str
+    joins: str
+    force: str
+    limits: str
+    state: str
+
+
+def _bar_rows(item: CaseResults) -> list[_BarRow]:
+    """One row a method and bar; none where the wall has no ties and props, or no answer gives forces."""
+    return [
+        _BarRow(
+            result.method,
+            bar.bar,
+            f"{bar.start} to {bar.end}",
+            numbers.given(bar.tension, 4),
+            f"{numbers.given(bar.least, 4)} to {numbers.given(bar.greatest, 4)}",
+            bar.state,
+        )
+        for result in item.results
+        for bar in bar_forces_of(item.case, result)
+    ]
+
+
+def _bars_text(case: Case) -> str:
+    """How many ties, props and faces in passive fill there are, and their greatest forces; empty if there are none."""
+    bars = case.assembly.bars
+    said = []
+    pulled, pushed = bars.prestress + bars.greatest, -(bars.prestress + bars.least)
+    for kind, noun, strongest in (("tie", "tie", pulled), ("prop", "prop", pushed), ("fill", "passive face", pushed)):
+        forces = [float(force) for force, own in zip(strongest, bars.kinds, strict=True) if own == kind]
+        if forces:
+            most = numbers.quantity(max(forces), case.wall.units.force, 4)
+            limit = most if min(forces) == max(forces) else f"up to {most}"
+            said.append(f"{numbers.count(len(forces), noun)}, yield force {limit}")
+    return "; ".join(said)

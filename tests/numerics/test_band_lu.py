@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from methods.numerics.band_lu import BandLU
+from methods.springs.model.factor import BandLU
 
 
 def banded(n: int, seed: int) -> sp.csc_matrix:

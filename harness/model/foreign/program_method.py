@@ -12,6 +12,9 @@ import os
 import signal
 import subprocess
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import IO, Any
 
@@ -28,7 +31,6 @@ from harness.model.foreign.spawning import output_of, whole_address_space
 from harness.model.json_text import json_of, read_json, text_of
 from harness.model.method import Answer, Method, Settings
 from harness.model.reading import validate
-from harness.model.run_context import run_folder
 
 _DESCRIBE_SECONDS = 30.0
 """In which a program must have described itself: the slowest of interpreters start within a few."""
@@ -36,6 +38,8 @@ _MOST_WORDS = 1_000_000
 """Bytes of a description, and of what is printed beside it."""
 _FAREST = 1e9
 """Seconds that a program without a limit is given: `{seconds}` is always a number."""
+_run_folder: ContextVar[str | None] = ContextVar("run_folder", default=None)
+"""The folder of the run under way, emptied after it whatever happens; None where a run has none of its own."""
 
 
 class ProgramMethod(Method):
@@ -87,7 +91,7 @@ class ProgramMethod(Method):
                 "Take another method",
             )
         chosen = settings.model_dump(mode="json")
-        with tempfile.TemporaryDirectory(prefix="program-", dir=run_folder(), ignore_cleanup_errors=True) as name:
+        with tempfile.TemporaryDirectory(prefix="program-", dir=_run_folder.get(), ignore_cleanup_errors=True) as name:
             folder = Path(name)
             data = self._asked(assembly, chosen, folder) if self.program.lines else self._ran(assembly, chosen, folder)
             try:
@@ -208,3 +212,13 @@ def method_named(name: str) -> ProgramMethod | None:
     """
     program = program_named(name)
     return None if program is None else method_of(program)
+
+
+@contextmanager
+def running_in(folder: str) -> Iterator[None]:
+    """Give the runs made inside a folder for their files."""
+    token = _run_folder.set(folder)
+    try:
+        yield
+    finally:
+        _run_folder.reset(token)

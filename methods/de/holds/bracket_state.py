@@ -1,16 +1,21 @@
-"""The answer of damped load steps whose search was stopped by the time limit: what is shown by then, and no more."""
+"""What the searches of all insertion orders found, and the answer where the time limit stopped them: no more than that.
+
+Orders are searched side by side, all with the tuning that is tried first. Where the first order asks for another, the
+others are searched again with it, so the answer is the one that a single process gives, to the bit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import STOPPED, OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status, processes_allowed
 from methods.de.holds.order_bracket import BracketSearch, OrderBracket
-from methods.de.holds.side_by_side import Findings, searched_ahead
+from methods.numerics.forks import in_forks
 from methods.numerics.statics import out_of_balance
 
 SEARCH_STOPPED = f"the search was {STOPPED}"
@@ -48,7 +53,7 @@ class BracketState:
     orders: int
     searches: list[BracketSearch] = field(default_factory=list)
     finished: list[OrderBracket] = field(default_factory=list)
-    ahead: dict[str, Findings] = field(default_factory=dict)
+    ahead: dict[str, _Findings] = field(default_factory=dict)
 
     def searched(self, search: BracketSearch, ask_multiplier: bool) -> OrderBracket:
         """Run a search whose findings are kept whatever stops it, or take those of one that was run ahead."""
@@ -67,7 +72,7 @@ class BracketState:
             return
         self.ahead = {}
 
-        def take(search: BracketSearch, findings: Findings) -> None:
+        def take(search: BracketSearch, findings: _Findings) -> None:
             self.ahead[search.found.order] = findings
 
         def keep() -> None:
@@ -80,7 +85,7 @@ class BracketState:
                         self.finished.append(found)
             raise OutOfTime
 
-        best_so_far(lambda: searched_ahead(searches, ask_multiplier, processes, take), keep)
+        best_so_far(lambda: _searched_ahead(searches, ask_multiplier, processes, take), keep)
 
     def counted(self) -> list[BracketSearch]:
         """The searches of the orders that were searched to the end; without any, all of the first order."""
@@ -176,3 +181,48 @@ def _so_far(known: BracketState) -> str:
     if known.finished:
         return f"{len(known.finished)} of {known.orders} sweep orders"
     return f"the first of {known.orders} sweep orders, not yet searched to its end"
+
+
+@dataclass(frozen=True, eq=False)
+class _Findings:
+    """What a search found in a process of its own.
+
+    Attributes:
+        found, states: as `BracketSearch` has them; steps: time steps of its engine.
+        stopped: whether the time limit ended it.
+    """
+
+    found: OrderBracket
+    states: list[tuple[float, FloatArray]]
+    steps: int
+    stopped: bool
+
+    def taken_by(self, search: BracketSearch) -> OrderBracket:
+        """Put the findings into a search that was not run here."""
+        search.found, search.states, search.engine.steps = self.found, self.states, self.steps
+        return self.found
+
+
+def _searched_ahead(
+    searches: Sequence[BracketSearch],
+    ask_multiplier: bool,
+    processes: int,
+    take: Callable[[BracketSearch, _Findings], None],
+) -> None:
+    """Run searches in forks of this process, and give each one's findings to `take` as they end.
+
+    Raises:
+        OutOfTime: the time was over; the findings until then were given.
+    """
+    calls = [partial(_findings, search, ask_multiplier) for search in searches]
+    for number, findings in in_forks(calls, processes):
+        take(searches[number], findings)
+
+
+def _findings(search: BracketSearch, ask_multiplier: bool) -> _Findings:
+    def to_its_end() -> bool:
+        search.run(ask_multiplier)
+        return False
+
+    stopped = best_so_far(to_its_end, lambda: True)
+    return _Findings(search.found, search.states, search.engine.steps, stopped)

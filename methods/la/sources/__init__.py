@@ -8,9 +8,8 @@ from dataclasses import replace
 
 from harness.model.assembly import FloatArray
 from methods.la.sources.arcs import FAR, ArcPaths, RestoredFriction
-from methods.la.sources.blocks import JoinedBlocks, SingleBlocks
 from methods.la.sources.friction_continuation import FrictionContinuation
-from methods.la.sources.mechanisms import GivenMechanisms
+from methods.la.sources.mechanisms import GivenMechanisms, JoinedBlocks, SingleBlocks
 from methods.la.sources.paths import AssociatedForces, CentralPath, OtherWeights, ReducedFriction, TrescaMechanisms
 from methods.la.sources.search import Search, Source
 from methods.la.sources.springs import AnalyticCentre, LowPrestress, ShiftedAssociated

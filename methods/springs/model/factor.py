@@ -14,9 +14,10 @@ from typing import Protocol
 import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
+from scipy.linalg import lapack
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.numerics.band_lu import BandLU
 from methods.numerics.block_kernels import COLUMNS
 from methods.numerics.block_lu import BlockFactor, BlockPattern
 from methods.numerics.compiled import compiled
@@ -319,3 +320,34 @@ def _append(
     index[count] = new_index
     b[count] = new_b
     denominator[count] = new_denominator
+
+
+class BandLU:
+    """LAPACK's LU in a band, with row exchanges, of a sparse matrix (N, N) of symmetric pattern, which may be singular.
+
+    Blocks of a wall touch few others, so that a band of about three unknowns a block of its longest front holds the
+    whole factor (reverse Cuthill-McKee order; George and Liu, 1981).
+
+    Attributes:
+        pivots: (N,) of the columns; zero where no row is left that a column could take.
+    """
+
+    def __init__(self, matrix: sp.csc_matrix) -> None:
+        self._order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
+        place = np.empty(len(self._order), dtype=np.int64)
+        place[self._order] = np.arange(len(place))
+        entries = matrix.tocoo()
+        row, column = place[entries.row], place[entries.col]
+        self._width = int(abs(row - column).max(initial=0))
+        band = np.zeros((3 * self._width + 1, len(place)), order="F")
+        band[2 * self._width + row - column, column] = entries.data
+        self._band, self._exchanged, _ = lapack.dgbtrf(band, self._width, self._width, overwrite_ab=True)
+        self.pivots = np.empty(len(place))
+        self.pivots[self._order] = self._band[2 * self._width]
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """The solution (N,) or (N, k) for right sides; not finite where a pivot is zero."""
+        solution, _ = lapack.dgbtrs(self._band, self._width, self._width, right[self._order], self._exchanged)
+        out: FloatArray = np.empty_like(solution)
+        out[self._order] = solution
+        return out

@@ -1,4 +1,4 @@
-"""Processes that a run has started and left: they are adopted by its worker, and end with the run.
+"""Processes: what they use, and those that a run has started and left, which its worker adopts and ends with the run.
 
 A process that begins a session of its own, or whose parent has ended, is of no process group that the engine knows.
 Where the worker adopts orphans (Linux), all of them stay its descendants; elsewhere those of its group are ended alone.
@@ -9,9 +9,10 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import resource
 import signal
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 import psutil
@@ -71,3 +72,23 @@ def _runs(process: psutil.Process) -> bool:
     with contextlib.suppress(psutil.Error):
         return bool(process.status() not in (psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD))
     return False
+
+
+def resource_use(pid: int, *, with_children: bool = False) -> tuple[int, float] | None:
+    """Resident memory [bytes] and CPU time [s] of a process, and of those it started if asked; None if it has ended."""
+    memory, cpu = 0, 0.0
+    with contextlib.suppress(psutil.Error):
+        leader = psutil.Process(pid)
+        for member in [leader, *(leader.children(recursive=True) if with_children else ())]:
+            with contextlib.suppress(psutil.Error):
+                memory += member.memory_info().rss
+                times = member.cpu_times()
+                cpu += times.user + times.system
+    return (memory, cpu) if memory else None
+
+
+def cpu_seconds(kept: Iterable[int] = ()) -> float:
+    """CPU time of this process, of those it started that have ended, and of some that it keeps [s]."""
+    own = (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN))
+    used = [resource_use(pid) for pid in kept]
+    return sum(usage.ru_utime + usage.ru_stime for usage in own) + sum(found[1] for found in used if found)
