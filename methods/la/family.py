@@ -57,36 +57,35 @@ class LimitAnalysisFamily(Solver):
     gives_most = False
     """Whether it answers with the most that statics allows."""
 
-    def solve(self, assembly: Assembly, settings: Any) -> Answer:
-        """The answer from those for the independent components of the wall, with what is proved of all of them."""
-        return self._of_wall(assembly, settings)
+    def solve(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
+        """The answer from those for the independent components of the wall, with what is proved of all of them.
 
-    def _of_wall(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
-        """As `solve`, each component answered by `answer`; where joints have strength, with the residual answer."""
-        return plastic_and_residual(
-            assembly, lambda wall: self._of_components(wall, settings, answer), most=self.gives_most
-        )
+        Args:
+            assembly, settings: as of `Solver`.
+            answer: answers for components; None: the method's own.
+        """
 
-    def _of_components(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
-        """As `solve`, each component answered by `answer`, by default the method's own."""
-        parts: list[Answer] = []
+        def of_components(wall: Assembly) -> Answer:
+            parts: list[Answer] = []
 
-        def solve_part(part: Assembly) -> Answer:
-            parts.append(self._of_component(part, settings, answer))
-            return parts[-1]
+            def solve_part(part: Assembly) -> Answer:
+                parts.append(self._of_component(part, settings, answer or self.answer))
+                return parts[-1]
 
-        return _proved_of_all(analysed(assembly, solve_part), parts)
+            return _proved_of_all(analysed(wall, solve_part), parts)
 
-    def _of_component(self, assembly: Assembly, settings: Any, answer: Answering | None = None) -> Answer:
-        """The answer of the dead load where it decides, else that of `answer`, by default the method's own."""
+        return plastic_and_residual(assembly, of_components, most=self.gives_most)
+
+    def _of_component(self, assembly: Assembly, settings: Any, answer: Answering) -> Answer:
+        """The answer of the dead load where it decides, else that of `answer`."""
         if assembly.crushes:
-            return self.crushing(assembly, settings, answer)
+            return self.crushing(assembly, settings)
         problem = make_problem(assembly)
         newton = NewtonMatrix(problem)
         early = dead_load_answer(problem, newton, assembly.has_live_load)
-        return early if early is not None else (answer or self.answer)(assembly, problem, newton, settings)
+        return early if early is not None else answer(assembly, problem, newton, settings)
 
-    def crushing(self, assembly: Assembly, settings: Any, answer: Answering | None) -> Answer:
+    def crushing(self, assembly: Assembly, settings: Any) -> Answer:
         """The answer for a component whose joints crush: by default the associated one."""
         return crushing_answer(assembly, self.greatest(settings))
 

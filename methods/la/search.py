@@ -11,7 +11,7 @@ from harness.model.method import Answer
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
 from methods.la.crushing import dead_load_decides
-from methods.la.family import Answering, LimitAnalysisFamily
+from methods.la.family import LimitAnalysisFamily
 from methods.la.least import least_known
 from methods.la.methods import LA
 from methods.la.sources import from_motions
@@ -43,13 +43,13 @@ class LimitAnalysis(LimitAnalysisFamily):
 
         return with_bound(assembly, problem, known, settings.bound)
 
-    def crushing(self, assembly: Assembly, settings: Any, answer: Answering | None) -> Answer:
+    def crushing(self, assembly: Assembly, settings: Any) -> Answer:
         """The least of the states of the stress blocks that the search finds within tangents; nothing is proved."""
         early = dead_load_decides(assembly, greatest_by_chords)
         if isinstance(early, Answer):
             return early
         unproved = settings.model_copy(update={"bound_seconds": 0.0})
-        return by_tangents(assembly, lambda wall: self._of_component(wall, unproved, answer), self._tangents)
+        return by_tangents(assembly, lambda wall: self._of_component(wall, unproved, self.answer), self._tangents)
 
     def solve_from(self, assembly: Assembly, settings: Any, motions: Sequence[FloatArray]) -> Answer:
         """The least of the states that given motions of the joints (m, 3) lead to, without a search of its own.
@@ -64,4 +64,4 @@ class LimitAnalysis(LimitAnalysisFamily):
             sources = from_motions([motion[joints_of(part, assembly)] for motion in motions])
             return least_known(problem, newton, settings, LA.tolerance, sources, self._choices)
 
-        return self._of_wall(assembly, settings, answered)
+        return self.solve(assembly, settings, answered)
