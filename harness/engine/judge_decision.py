@@ -26,9 +26,9 @@ def said_of(tolerance: float, accepted: bool | None, sentence: str) -> Judgement
     return Judgement(tolerance=tolerance, accepted=accepted, sentence=sentence)
 
 
-def beyond_prestress(assembly: Assembly, result: Result, name: str = BAR_FORCES) -> FloatArray | None:
+def beyond_prestress(assembly: Assembly, result: Result) -> FloatArray | None:
     """The tensions (k,) of bars beyond their prestress, None without bars; `judge` has refused what cannot be read."""
-    found = tensions_beyond(assembly, result.details, name)
+    found = tensions_beyond(assembly, result.details, BAR_FORCES)
     return None if isinstance(found, str) else found
 
 

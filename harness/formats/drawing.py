@@ -174,7 +174,7 @@ class Drawing:
             holes = self._holes_in(shapely.Polygon(stone.polygon), [*stone.holes, cut.polygon], "a stone")
             self.outlines[least] = replace(stone, holes=holes)
 
-    def add_lines(self, lines: Sequence[tuple[FloatArray, str]], kind: str = LINES) -> None:
+    def add_lines(self, lines: Sequence[tuple[FloatArray, str]]) -> None:
         """Add the areas that lines (k, 2) of one layer close, and note what ends in the open.
 
         Lines of a layer are cut where they meet, so a joint drawn once closes the stones on both sides of it.
@@ -198,7 +198,7 @@ class Drawing:
                 )
             for face in shapely.get_parts(faces):
                 within = [np.asarray(ring.coords)[:-1] for ring in face.interiors]
-                self.add(kind, np.asarray(face.exterior.coords)[:-1], within, layer=layer)
+                self.add(LINES, np.asarray(face.exterior.coords)[:-1], within, layer=layer)
             loose = shapely.get_num_geometries(dangles)
             if loose:
                 x, y = shapely.get_coordinates(dangles)[0]

@@ -9,7 +9,7 @@ inner edges of their strips.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,50 +23,38 @@ from methods.numerics.pressed_state import held_forces, nearest_motion
 from methods.numerics.stress_blocks import pressed_shares
 from methods.numerics.tangent_search import Tangents, TangentTolerances, first_tangents, greatest_of_statics
 
-
-@dataclass(frozen=True)
-class HeldTangents:
-    """When the brackets of walls within tangents end.
-
-    Attributes:
-        tangents: as they are added.
-        settled: relative change of the multiplier between two brackets: a fifth of the accuracy that is stated.
-        rounds: of brackets, at most.
-    """
-
-    tangents: TangentTolerances = TangentTolerances()
-    settled: float = 1e-3
-    rounds: int = 12
+_SETTLED = 1e-3
+"""Relative change of the multiplier between two brackets at which they end: a fifth of the accuracy that is stated."""
+_ROUNDS = 12
+"""Brackets at most."""
 
 
-def held_within_tangents(
-    assembly: Assembly, solve: Callable[[Assembly], Answer], options: HeldTangents = HeldTangents()
-) -> Answer:
+def held_within_tangents(assembly: Assembly, solve: Callable[[Assembly], Answer]) -> Answer:
     """The answer for a component whose joints crush; `solve` answers for walls that do not and have further limits."""
-    greatest = greatest_of_statics(assembly)
-    tangents, before = first_tangents(assembly, greatest, options.tangents), np.nan
+    greatest, tolerances = greatest_of_statics(assembly), TangentTolerances()
+    tangents, before = first_tangents(assembly, greatest, tolerances), np.nan
     answer = Answer(Status.NOT_CONVERGED, Finding.NONE, "")
-    for rounds in range(1, options.rounds + 1):
+    for rounds in range(1, _ROUNDS + 1):
         wall, limits = tangents.wall(assembly)
         of_wall = solve(wall)
         answer = without_limits(of_wall, assembly, limits)
         if answer.finding is Finding.UNBOUNDED and growing_forces(assembly) is None:
-            tangents = tangents.where_all_is_pressed(assembly, options.tangents)
+            tangents = tangents.where_all_is_pressed(assembly, tolerances)
             continue
         ends = ends_at(answer, len(limits.joint))
         if ends is not None:
             return ends
         assert answer.forces is not None
         multiplier = answer.multiplier or 0.0
-        further = tangents.where_outside(assembly, answer.forces, None, options.tangents)
-        settled = abs(multiplier - before) <= options.settled * multiplier
+        further = tangents.where_outside(assembly, answer.forces, None, tolerances)
+        settled = abs(multiplier - before) <= _SETTLED * multiplier
         if answer.finding is Finding.STANDS or settled or further is None:
             held = held_forces(assembly, answer.forces, answer.forces_multiplier or 0.0)
             if held is not None:
                 answer = replace(answer, forces=held, details=answer.details | {"searches": rounds})
                 return _with_motion(assembly, wall, tangents, of_wall, answer)
         tangents, before = further or tangents, multiplier
-    sentence = f"the multiplier did not settle over {options.rounds} walls within tangents of their stress blocks"
+    sentence = f"the multiplier did not settle over {_ROUNDS} walls within tangents of their stress blocks"
     return not_found(answer, sentence, greatest.upper)
 
 

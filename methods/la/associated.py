@@ -34,6 +34,9 @@ from methods.numerics.stress_blocks import (
     kinematic_multiplier,
 )
 
+_TOLERANCE = 1e-9
+"""Greatest relative difference of the static and the kinematic multiplier, and residual, of an answer."""
+
 
 class AssociatedLimitAnalysis(LimitAnalysisFamily):
     """Greatest multiplier of statics, the linear programme of associated limit analysis (`la-associated`).
@@ -49,7 +52,7 @@ class AssociatedLimitAnalysis(LimitAnalysisFamily):
 
     def answer(self, assembly: Assembly, problem: Problem, newton: NewtonMatrix, settings: Any) -> Answer:
         """The linear programme by simplex or interior point."""
-        return _associated_answer(problem, solve_associated(problem, newton, settings.solver, self._end), 1e-9)
+        return _associated_answer(problem, solve_associated(problem, newton, settings.solver, self._end))
 
     def greatest(self, settings: Any) -> Greatest:
         """Linear programmes with chords and tangents of the stress blocks."""
@@ -65,15 +68,15 @@ class AssociatedLimitAnalysisCvxpy(LimitAnalysisFamily):
         """The linear programme through cvxpy; its mechanism is found as for `la-associated`."""
         outcome, forces, multiplier = solve_with_cvxpy(problem, settings.solver)
         if forces is None:
-            return _associated_answer(problem, AssociatedResult(outcome), 1e-9)
-        return _associated_answer(problem, with_mechanism(problem, newton, forces, multiplier, 0), 1e-9)
+            return _associated_answer(problem, AssociatedResult(outcome))
+        return _associated_answer(problem, with_mechanism(problem, newton, forces, multiplier))
 
     def greatest(self, settings: Any) -> Greatest:
         """The programme of cones."""
         return partial(_greatest_by_cones, solver=settings.cone_solver)
 
 
-def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: float) -> Answer:
+def _associated_answer(problem: Problem, result: AssociatedResult) -> Answer:
     """The answer that belongs to the outcome of the associated programme."""
     if result.outcome == "unbounded":
         return unbounded_answer(
@@ -82,9 +85,9 @@ def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: fl
         )
     if result.state is None:
         return not_converged(f"The linear programme ended as {result.outcome}.", result.iterations)
-    if not result.gap <= tolerance:
+    if not result.gap <= _TOLERANCE:
         return not_converged(
-            f"The static and the kinematic multiplier differ by {result.gap:.2g}, more than {tolerance:.2g}.",
+            f"The static and the kinematic multiplier differ by {result.gap:.2g}, more than {_TOLERANCE:.2g}.",
             result.iterations,
         )
     multiplier = problem.to_multiplier(result.state.multiplier)
@@ -92,7 +95,7 @@ def _associated_answer(problem: Problem, result: AssociatedResult, tolerance: fl
         problem,
         result.state,
         f"The greatest multiplier within statics and yield is {multiplier:.7g}, an upper bound whatever the flow.",
-        tolerance,
+        _TOLERANCE,
         result.iterations,
         {"duality_gap": result.gap, "unknowns": 3 * problem.n_interfaces + 1},
     )

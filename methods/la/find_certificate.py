@@ -83,7 +83,6 @@ def find_certificate(
     search: SearchSettings,
     nodes: int | None = None,
     say_before: Callable[[str], None] = lambda sentence: None,
-    sizes: Sizes = Sizes(),
 ) -> Attempt:
     """The certificate of the tree where that ends, else of windows.
 
@@ -92,11 +91,10 @@ def find_certificate(
         seconds: of CPU time for the windows.
         search: of the state below which the windows lie.
         nodes: of the tree at most; None as many as `la` takes, which are none on walls where hardly any ends.
-        sizes: of walls on which the tree has nodes.
         say_before: called with what is known of the bound of such walls, before time is spent on it.
     """
     problem = make_problem(assembly)
-    most = sizes.limits(search.effort, problem).nodes if nodes is None else nodes
+    most = Sizes().limits(search.effort, problem).nodes if nodes is None else nodes
     document = certificate(assembly, most) if most else None
     if document is not None:
         return Attempt(document)

@@ -18,9 +18,9 @@ from methods.la.core.state import residuals
 from methods.la.interior.arc import ArcPath, Stepping
 from methods.la.interior.associated import EndOfPath
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
-from methods.la.interior.interior_starting_point import StartingPair, interior_starting_point
+from methods.la.interior.interior_starting_point import FEASIBLE, interior_starting_point
 from methods.la.interior.newton_step import NewtonStep, Point
-from methods.la.interior.region import Part, with_all_above
+from methods.la.interior.region import with_all_above
 from methods.la.least import least_of
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings
@@ -67,13 +67,8 @@ def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
     assert np.all(pair.rates > 0.0)
     assert problem.live @ pair.velocities == pytest.approx(problem.live_work, rel=1e-9)
     # In mean weights of a block, and for velocities of order one.
-    assert (
-        abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= StartingPair().feasible
-    )
-    assert (
-        abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max()
-        <= StartingPair().feasible
-    )
+    assert abs(problem.imbalance(problem.forces_of_slacks(pair.slack), pair.multiplier)).max() <= FEASIBLE
+    assert abs(problem.strains(pair.velocities) - problem.strains_of_rates(pair.rates, 0.0)).max() <= FEASIBLE
 
 
 @pytest.mark.parametrize(("courses", "bricks"), [(6, 3), (14, 16)])
@@ -122,7 +117,7 @@ def test_vertical_force_on_one_block_of_a_large_wall_is_unbounded() -> None:
 def test_what_rests_on_a_moving_block_moves() -> None:
     wall = running_bond(3, 2, 0.2, 0.65)
     lowest = int(np.flatnonzero(~wall.fixed)[np.argmin(wall.centroid[~wall.fixed, 1])])
-    moves = with_all_above(wall, np.arange(wall.n_blocks) == lowest, Part().bed)
+    moves = with_all_above(wall, np.arange(wall.n_blocks) == lowest)
     above = wall.centroid[moves, 1] > wall.centroid[lowest, 1]
     assert above.sum() == moves.sum() - 1 > 0
     assert not moves[wall.fixed].any()

@@ -31,21 +31,12 @@ Make = Callable[[Sequence[SweepRun]], list[Row]]
 
 _DECIDED = {str(Finding.FALLS), str(Finding.STANDS)}
 """Findings that no mechanism of another wall can change."""
-
-
-@dataclass(frozen=True)
-class Sharing:
-    """How far states are handed on.
-
-    Attributes:
-        nearest: walls of the same joints that each takes from, by the order of what varies.
-        rounds: after which no more is handed on; each carries a state one neighbourhood further.
-        lower: relative difference from which a multiplier is lower, above what is left of rounding.
-    """
-
-    nearest: int = 8
-    rounds: int = 6
-    lower: float = 1e-9
+_NEAREST = 8
+"""Walls of the same joints from which each takes states over, by the order of what varies."""
+_ROUNDS = 6
+"""After which no more is handed on; each carries a state one neighbourhood further."""
+_LOWER = 1e-9
+"""Relative difference from which a multiplier is lower, above what is left of rounding."""
 
 
 @dataclass(eq=False)
@@ -84,17 +75,16 @@ class _Cell:
         self.handed.update(fresh)
         return replace(self.run, given=tuple(fresh.values())) if fresh else None
 
-    def takes(self, row: Row, lower: float, failure: str) -> bool:
+    def takes(self, row: Row, failure: str) -> bool:
         """Whether a row is a lower state, which then stands for the run; its cost counts in any case.
 
         Args:
             row: of a run with what neighbours found.
-            lower: relative difference from which it is lower.
             failure: why it did not try all of that; then it is not known whether some of it leads lower.
         """
         spent = {name: _sum(self.row[name], row[name]) for name in ("cpu_seconds", "wall_seconds")}
         found = _multiplier(row)
-        better = found < self.multiplier - lower * abs(found)
+        better = found < self.multiplier - _LOWER * abs(found)
         self.row = (self.row | row if better else self.row) | spent
         if better:
             self.row |= {"from_neighbour": True, "multiplier_alone": self.alone if np.isfinite(self.alone) else None}
@@ -104,9 +94,7 @@ class _Cell:
         return better
 
 
-def handed_on(
-    runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make: Make, sharing: Sharing | None = None
-) -> list[Row]:
+def handed_on(runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make: Make) -> list[Row]:
     """The rows of a study after each run has taken up what its neighbours found, round after round until none falls.
 
     Args:
@@ -114,17 +102,15 @@ def handed_on(
         rows: of these, in any order.
         store: with their results.
         make: makes the runs that take up motions.
-        sharing: how far; None: `Sharing()`.
 
     Returns:
         one row a run; where a state was taken over its `multiplier_alone` is what the run found by itself; where a run
         ended before it had tried all that neighbours found its `neighbour_failure` says why.
     """
-    chosen = sharing or Sharing()
     by_number = {int(row["number"]): row for row in rows}
-    cells = list(_cells(runs, by_number, chosen.nearest))
+    cells = list(_cells(runs, by_number))
     changed = cells
-    for _ in range(chosen.rounds):
+    for _ in range(_ROUNDS):
         for cell in changed:
             cell.look_up(store)
         asked = {cell.run.number: (cell, run) for cell in cells if (run := cell.asks()) is not None}
@@ -134,12 +120,12 @@ def handed_on(
         changed = [
             cell
             for number, (cell, _) in asked.items()
-            if cell.takes(ended[number], chosen.lower, _failure(ended[number], store))
+            if cell.takes(ended[number], _failure(ended[number], store))
         ]
     return [row for _, row in sorted((by_number | {cell.run.number: cell.row for cell in cells}).items())]
 
 
-def _cells(runs: Sequence[SweepRun], rows: dict[int, Row], nearest: int) -> Iterable[_Cell]:
+def _cells(runs: Sequence[SweepRun], rows: dict[int, Row]) -> Iterable[_Cell]:
     """The runs that may take states over, each with its neighbours."""
     follow = {name for name in {run.method for run in runs} if load_method(name).follows_motions}
     groups = defaultdict[Hashable, list[_Cell]](list)
@@ -155,7 +141,7 @@ def _cells(runs: Sequence[SweepRun], rows: dict[int, Row], nearest: int) -> Iter
             for number, cell in enumerate(group):
                 away = ((places - places[number]) ** 2).sum(axis=1)
                 order = [int(k) for k in np.argsort(away, kind="stable") if k != number]
-                cell.near = [group[k] for k in order[:nearest]]
+                cell.near = [group[k] for k in order[:_NEAREST]]
             yield from group
 
 

@@ -102,9 +102,7 @@ def _bears_live_load_alone(problem: Problem) -> bool:
     return isinstance(standing(alone), StaticSolution)
 
 
-def with_mechanism(
-    problem: Problem, newton: NewtonMatrix, forces: FloatArray, multiplier: float, iterations: int
-) -> AssociatedResult:
+def with_mechanism(problem: Problem, newton: NewtonMatrix, forces: FloatArray, multiplier: float) -> AssociatedResult:
     """The result of optimal forces: a dilatant mechanism in their tight contacts, polished and compared."""
     slack = np.maximum(problem.slacks(forces), 0.0)
     programme = KinematicProgramme(problem, associated=True)
@@ -112,10 +110,10 @@ def with_mechanism(
     if mechanism is None:
         mechanism = programme.solve(np.ones(slack.shape, dtype=bool), slack)
     if mechanism is None:
-        return AssociatedResult("unknown", iterations=iterations)
+        return AssociatedResult("unknown")
     state = CollapseState(forces, multiplier, mechanism.velocities, moving_contacts(mechanism.rates), associated=True)
     state = polished(problem, newton, state)
-    return AssociatedResult("optimal", state, _duality_gap(problem, state), iterations)
+    return AssociatedResult("optimal", state, _duality_gap(problem, state))
 
 
 def _duality_gap(problem: Problem, state: CollapseState) -> float:

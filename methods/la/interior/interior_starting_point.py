@@ -12,7 +12,7 @@ within yield, the wall stands, and the forces between the two ends balance f0 ex
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,41 +25,30 @@ from methods.la.interior.interior_point import PathSettings, follow_path, start_
 from methods.la.interior.newton_step import Point
 from methods.numerics.failures import NumericalFailure
 
-
-@dataclass(frozen=True)
-class StartingPair:
-    """How exact the pair is, and where its paths are left.
-
-    Attributes:
-        feasible: scaled equilibrium and compatibility residuals.
-        early: relative gap of the kinematic programme at which its path is left; full steps may end below it.
-        least_cost: least cost of a rate, so that none is free to grow.
-    """
-
-    feasible: float = 1e-6
-    early: float = 1e-2
-    least_cost: float = 1e-9
+FEASIBLE = 1e-6
+"""Scaled residuals of equilibrium and of compatibility at which the paths end."""
+_EARLY = 1e-2
+"""Relative gap of the kinematic programme at which its path is left; full steps may end below it."""
+_LEAST_COST = 1e-9
+"""Of a rate, so that none is free to grow."""
 
 
-def interior_starting_point(
-    problem: Problem, newton: NewtonMatrix, gap: float, options: StartingPair = StartingPair()
-) -> tuple[Point | None, int]:
+def interior_starting_point(problem: Problem, newton: NewtonMatrix, gap: float) -> tuple[Point | None, int]:
     """The pair as one point, or None where either path does not get there, and the Newton steps spent.
 
     Args:
         problem: the scaled wall.
         newton: its Newton matrix.
         gap: relative gap of the associated path at which its forces are taken; full steps may end below it.
-        options: how exact the pair is.
     """
-    settings = PathSettings(dilatancy=1.0, gap=gap, residual=options.feasible)
+    settings = PathSettings(dilatancy=1.0, gap=gap, residual=FEASIBLE)
     forces = follow_path(problem, newton, start_point(problem), settings)
     if not forces.converged:
         return None, forces.iterations
     slack = forces.point.slack
-    cost = slack / float(np.median(slack)) + options.least_cost
+    cost = slack / float(np.median(slack)) + _LEAST_COST
     programme = kinematic_programme(problem, np.where(close_tight(problem), 0.0, cost))
-    settings = PathSettings(dilatancy=1.0, gap=options.early, residual=options.feasible)
+    settings = PathSettings(dilatancy=1.0, gap=_EARLY, residual=FEASIBLE)
     mechanism = follow_path(programme, newton, start_point(programme), settings)
     steps = forces.iterations + mechanism.iterations
     if not mechanism.converged:

@@ -16,18 +16,10 @@ from methods.la.core.problem import Problem, make_problem
 from methods.la.interior.interior_point import PathResult
 from methods.la.interior.newton_step import Point
 
-
-@dataclass(frozen=True)
-class Part:
-    """What belongs to the part.
-
-    Attributes:
-        moves: speed relative to the fastest block from which a block belongs to it.
-        bed: part of the normal of a joint along the dead load from which one of its blocks rests on the other.
-    """
-
-    moves: float = 1e-4
-    bed: float = 0.5
+_MOVES = 1e-4
+"""Speed relative to the fastest block from which a block belongs to the part."""
+_BED = 0.5
+"""Part of the normal of a joint along the dead load from which one of its blocks rests on the other: a bed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +31,7 @@ class Region:
     kept: BoolArray
 
 
-def moving_region(problem: Problem, velocities: FloatArray, options: Part = Part()) -> Region:
+def moving_region(problem: Problem, velocities: FloatArray) -> Region:
     """The blocks that a mechanism with velocities (3n,) moves, and all that rest on them.
 
     A fixed block that rests on a moving one would lock it, for without dilatancy it cannot be lifted.
@@ -47,7 +39,7 @@ def moving_region(problem: Problem, velocities: FloatArray, options: Part = Part
     assembly = problem.assembly
     motion = problem.to_mechanism(velocities) * np.array([1.0, 1.0, problem.unit_length])
     speed = abs(motion).max(axis=1)
-    fixed = ~with_all_above(assembly, speed > options.moves * speed.max(), options.bed)
+    fixed = ~with_all_above(assembly, speed > _MOVES * speed.max())
     kept = ~(fixed[assembly.block_a] & fixed[assembly.block_b])
     part = replace(
         assembly.with_joints(kept),
@@ -59,12 +51,12 @@ def moving_region(problem: Problem, velocities: FloatArray, options: Part = Part
     return Region(scaled, NewtonMatrix(scaled), kept)
 
 
-def with_all_above(assembly: Assembly, moves: BoolArray, bed: float) -> BoolArray:
-    """The moving blocks (n,) and those that rest on them, directly or not, on joints that are beds as `Part` says."""
+def with_all_above(assembly: Assembly, moves: BoolArray) -> BoolArray:
+    """The moving blocks (n,) and those that rest on them, directly or not, on joints that are beds."""
     down = assembly.dead[:, :2].sum(axis=0)
     rests = assembly.normal @ down / (np.linalg.norm(down) or 1.0)
-    lower = np.concatenate([assembly.block_a[rests < -bed], assembly.block_b[rests > bed]])
-    upper = np.concatenate([assembly.block_b[rests < -bed], assembly.block_a[rests > bed]])
+    lower = np.concatenate([assembly.block_a[rests < -_BED], assembly.block_b[rests > _BED]])
+    upper = np.concatenate([assembly.block_b[rests < -_BED], assembly.block_a[rests > _BED]])
     moves, count = moves & ~assembly.fixed, -1
     while moves.sum() != count:
         count = moves.sum()

@@ -98,7 +98,7 @@ class Sizes:
         return SearchLimits(0, 40, descents=0, breakpoints=60_000, unbounded_breakpoints=1)
 
 
-def rounds_of(settings: SearchSettings, problem: Problem, sizes: Sizes = Sizes()) -> tuple[SearchLimits, ...]:
+def rounds_of(settings: SearchSettings, problem: Problem) -> tuple[SearchLimits, ...]:
     """The limits that the settings ask for, of one round of the search after the other.
 
     What they leave open depends on the size of the wall. Whoever asks for draws, starts or factors has them descended
@@ -108,7 +108,7 @@ def rounds_of(settings: SearchSettings, problem: Problem, sizes: Sizes = Sizes()
     asked = {name: value for name in names if (value := getattr(settings, name)) is not None}
     rounds = []
     for effort in ("normal", "deep") if settings.effort == "deep" else (settings.effort,):
-        limits = sizes.limits(effort, problem)
+        limits = Sizes().limits(effort, problem)
         rounds.append(replace(limits, descents=max(limits.descents, 1), **asked) if asked else limits)
     return tuple(rounds)
 
