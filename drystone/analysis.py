@@ -11,7 +11,7 @@ from drystone.walls import Wall, checked_wall
 from harness.engine import pipeline
 from harness.engine.executors import InProcess, LocalExecutor
 from harness.engine.judge import judge as judge_result
-from harness.engine.plan import check_methods, check_shares
+from harness.engine.plan import check_methods
 from harness.engine.run import Limits, Run
 from harness.model.columns import ResultRow
 from harness.model.comparison import CaseResults
@@ -206,7 +206,7 @@ def analyse_by(
         raise InputError("a method that is not installed keeps no results", "Give it an entry point", "store")
     else:
         loaded = checked_method(method)
-    check_shares(loaded, processes)
+    _check_shares(loaded, processes)
     validate(loaded.Settings, settings, "settings")
     run = Run(
         wall.case,
@@ -242,3 +242,17 @@ def judge(wall: Wall, answer: Answer | Record, tolerance: float = 1e-9) -> Judge
     if isinstance(answer, Answer):
         answer = result_of(answer, wall.assembly, case=wall.name, method="foreign", family="foreign")
     return judge_result(wall.assembly, answer, tolerance)
+
+
+def _check_shares(method: Method, processes: int) -> None:
+    """Refuse more than one process for a method that makes its runs in one.
+
+    Raises:
+        InputError: that is so.
+    """
+    if processes > 1 and not method.shares_work:
+        raise InputError(
+            f"{method.name} makes a run in one process: its parts begin with what those before them found",
+            "Leave it out; several runs go side by side in `drystone compare` and `drystone sweep`",
+            "--jobs",
+        )

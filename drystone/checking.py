@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from drystone.certificates import certificate_line, certificate_runs
 from drystone.walls import Wall, checked_walls, library_wall, library_walls
 from harness.engine import pipeline, regression
-from harness.engine.plan import check_methods, gated_runs
+from harness.engine.plan import check_methods
 from harness.engine.run import Limits, Run
 from harness.engine.store import Store
 from harness.model.case import Case
@@ -117,6 +117,20 @@ def planned(cases: Sequence[Case], tier: Tier) -> Plan:
         InputError: a method that a reference names does not exist.
     """
     limits = Limits(seconds=SECONDS[tier])
-    runs = [run for case in cases for run in gated_runs(case, limits, tier)]
+    runs = [run for case in cases for run in _gated_runs(case, limits, tier)]
     check_methods(sorted({run.method for run in runs}), "applies_to of a checked reference")
     return Plan(runs, certificate_runs(cases, limits) if tier == "full" else [])
+
+
+def _gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
+    """The runs that the checked references of a case need, and no others."""
+    needed: dict[tuple[str, str], Run] = {}
+    for item in case.file.references:
+        if not item.gate or (item.tier == "full" and tier != "full"):
+            continue
+        for method in item.applies_to:
+            place = (method, repr(sorted(item.settings.items())))
+            earlier = needed.get(place)
+            references = (*earlier.references, item) if earlier else (item,)
+            needed[place] = Run(case, method, dict(item.settings), limits, references)
+    return list(needed.values())

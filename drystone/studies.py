@@ -26,6 +26,8 @@ from harness.model.case import shipped_cases
 from harness.model.errors import InputError, of_those_there
 from harness.model.method_registry import load_method
 from harness.model.reading import wall_json
+from harness.model.writing import write_whole
+from reports.page.study_page import StudyPage, render
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,7 +100,7 @@ class Sweep:
         """
         from harness.engine.sweep.summary import grid_of
         from reports.charts.styles import mark_named
-        from reports.page.study_page import StudyPage, write_page
+        from reports.page.study_page import StudyPage
 
         created = datetime.now(UTC).isoformat(timespec="seconds")
         study, summary = self.study, self.summary
@@ -107,7 +109,7 @@ class Sweep:
         target.parent.mkdir(parents=True, exist_ok=True)
         marks = {name: mark_named(name, load_method(name).traits) for name in study.methods}
         remarks = [*summary.remarks, *(f"{name}: {sentence}" for sentence, name in self.warnings.items())]
-        write_page(StudyPage(*about, summary.tables, remarks, list(data), marks), target)
+        _write_page(StudyPage(*about, summary.tables, remarks, list(data), marks), target)
         return target
 
     def _repr_html_(self) -> str:
@@ -285,3 +287,8 @@ def _opened(store: str | Path | None) -> Iterator[Store]:
     """The store, or one that is gone afterwards."""
     with tempfile.TemporaryDirectory() as folder, open_store(Path(store or Path(folder) / "runs.sqlite")) as opened:
         yield opened
+
+
+def _write_page(page: StudyPage, path: Path) -> None:
+    """Write the page of a study as one HTML file that works offline."""
+    write_whole(path, render(page))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
@@ -44,13 +45,15 @@ from drystone.walls import Wall
 from harness.engine import regression
 from harness.engine.executors import LocalExecutor
 from harness.engine.isolate import preload_methods
-from harness.engine.plan import check_methods, check_no_methods, find_cases, plan_case
+from harness.engine.plan import check_methods, find_cases, plan_case
 from harness.engine.run import Limits
 from harness.engine.store import open_store
 from harness.model.comparison import ComparisonRun
+from harness.model.errors import InputError
 from harness.model.library import library
 from harness.model.live_load import is_horizontal, reversed_live
 from harness.model.load_cases import load_cases_of
+from harness.model.method_registry import method_names
 
 
 @click.command()
@@ -102,7 +105,7 @@ def compare(
     folders: tuple[Path, ...],
 ) -> None:
     """Run methods on CASES (ids, case folders, WALL.json files) or a suite, judge, store and report."""
-    check_no_methods(cases, methods)
+    _check_no_methods(cases, methods)
     named = find_cases(cases, suite, folders)
     chosen = [each for case in named for each in as_loaded(case, load_case, live, both_signs=both_signs)]
     if methods is not None:
@@ -230,3 +233,17 @@ def learn(output: Path, jobs: int, store: Path) -> None:
         made = compared(title, command, chosen, runs, opened, LocalExecutor(jobs), progress=progress, certified=False)
     write_learn(made, output)
     say(f"Page: {output}")
+
+
+def _check_no_methods(words: Sequence[str], methods: Sequence[str] | None) -> None:
+    """Refuse words in the place of cases that are names of methods, as of a list without commas.
+
+    Raises:
+        InputError: one is a method, and there is no such file.
+    """
+    found = [word for word in words if word in method_names() and not Path(word).exists()]
+    if found:
+        asked = ",".join(dict.fromkeys([*(methods or ()), *found]))
+        raise InputError(
+            f'"{found[0]}" is a method and no case', f"Separate methods by commas: --methods {asked}", "cases"
+        )

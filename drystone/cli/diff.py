@@ -16,6 +16,8 @@ from harness.engine.diff import difference, read_answers
 from harness.model.case import shipped_cases
 from harness.model.difference import DIFFERENCE, Difference, Slower
 from harness.model.table import values
+from harness.model.writing import write_whole
+from reports.page.diff_page import render
 
 
 @click.command()
@@ -43,9 +45,7 @@ def diff(sets: tuple[Path, ...], share: float, html: Path | None, junit: Path | 
     old = sets[0] if len(sets) == 2 else shipped_cases() / "baseline.json"
     found = difference(read_answers(old), read_answers(sets[-1]), Slower(share=share))
     if html is not None:
-        from reports.page.diff_page import write_diff
-
-        write_diff(found, html)
+        _write_diff(found, html)
     if junit is not None:
         write_junit(f"drystone diff {found.old} {found.new}", tests_of_difference(found), junit)
     if as_json:
@@ -69,3 +69,8 @@ def _json(found: Difference) -> dict[str, Any]:
         "rows": [values(DIFFERENCE, row) for row in found.rows],
         "pairs": [asdict(pair) for pair in found.pairs],
     }
+
+
+def _write_diff(found: Difference, path: Path) -> None:
+    """Write the page of a comparison of two sets as one HTML file that works offline."""
+    write_whole(path, render(found))

@@ -31,13 +31,13 @@ from drystone.cli.options import (
 )
 from drystone.cli.settings import settings_of
 from drystone.walls import Wall
-from harness.engine.plan import check_methods, check_order, check_taken, find_cases
+from harness.engine.plan import check_methods, check_taken, find_cases
 from harness.engine.run import Limits
 from harness.model.envelope import envelope
 from harness.model.errors import MOST_NAMED, InputError, first_few
 from harness.model.load_cases import named_loads_of
 from harness.model.method import Status
-from harness.model.method_registry import load_method
+from harness.model.method_registry import load_method, method_names
 from harness.model.result import Result
 
 _SEVERITY = (INPUT_ERROR, 1, 3, 0)
@@ -85,7 +85,7 @@ def run(
     memory: int,
 ) -> None:
     """Run METHOD on CASE (an id, a case folder or a WALL.json) and print what it finds."""
-    check_order(method, case)
+    _check_order(method, case)
     check_methods([method], "method")
     (found,) = find_cases([case], None, folders)
     chosen = settings_of(method, settings)
@@ -131,3 +131,15 @@ def _code(result: Result) -> int:
     if result.status is Status.REFUSED:
         return INPUT_ERROR
     return 1 if result.status is not Status.OK else terminal.JUDGED[result.judge.accepted]
+
+
+def _check_order(method: str, case: str) -> None:
+    """Refuse a method and a case that are given in the wrong order.
+
+    Raises:
+        InputError: that is so.
+    """
+    known = method_names()
+    if method not in known and case in known:
+        remedy = f"The method comes first: {case} {method}"
+        raise InputError(f'"{case}" is a method and "{method}" is not: their order is swapped', remedy, "method")

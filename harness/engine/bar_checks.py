@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from harness.model.assembly import Assembly, FloatArray
-from harness.model.bars import Bars
 from harness.model.details import BAR_FORCES, AnswerDetails
 
 
@@ -30,11 +29,6 @@ def tensions_beyond(assembly: Assembly, details: dict[str, Any], name: str = BAR
     if tension.shape != (len(bars),) or not np.isfinite(tension).all():
         return f"`{name}` are not {len(bars)} finite tensions."
     return tension - bars.prestress
-
-
-def outside_range(bars: Bars, beyond: FloatArray) -> FloatArray:
-    """(k,) tension beyond the range of each bar [force]."""
-    return np.asarray(np.maximum(0.0, np.maximum(bars.least - beyond, beyond - bars.greatest)))
 
 
 def dissipated_by_bars(assembly: Assembly, mechanism: FloatArray) -> float:

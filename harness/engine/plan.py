@@ -23,7 +23,6 @@ def plan_case(
     case: Case,
     methods: Sequence[str] | None,
     limits: Limits | None,
-    tier: str = "quick",
     settings: Mapping[str, dict[str, Any]] | None = None,
 ) -> list[Run]:
     """The runs of one case: each method with the settings chosen first, then those references ask settings for.
@@ -32,10 +31,9 @@ def plan_case(
         case: the case.
         methods: names given by the user, or None for the case's own choice.
         limits: of each run; None: none, in this process.
-        tier: "quick" leaves out references of the full tier.
         settings: of methods by name, where they are not the defaults; references to other settings do not apply.
     """
-    references = [item for item in case.file.references if tier == "full" or item.tier == "quick"]
+    references = [item for item in case.file.references if item.tier == "quick"]
     if methods is None:
         asked = {method for item in references if item.gate for method in item.applies_to}
         base = case.file.methods if case.file.methods is not None else library().methods.compare
@@ -53,20 +51,6 @@ def plan_case(
     return runs
 
 
-def gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
-    """The runs that the checked references of a case need, and no others."""
-    needed: dict[tuple[str, str], Run] = {}
-    for item in case.file.references:
-        if not item.gate or (item.tier == "full" and tier != "full"):
-            continue
-        for method in item.applies_to:
-            place = (method, repr(sorted(item.settings.items())))
-            earlier = needed.get(place)
-            references = (*earlier.references, item) if earlier else (item,)
-            needed[place] = Run(case, method, dict(item.settings), limits, references)
-    return list(needed.values())
-
-
 def check_methods(names: Sequence[str], element: str = "--methods") -> None:
     """Refuse a method that there is not; `element` is what named it.
 
@@ -81,30 +65,6 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
             )
 
 
-def check_order(method: str, case: str) -> None:
-    """Refuse a method and a case that are given in the wrong order.
-
-    Raises:
-        InputError: that is so.
-    """
-    known = method_names()
-    if method not in known and case in known:
-        remedy = f"The method comes first: {case} {method}"
-        raise InputError(f'"{case}" is a method and "{method}" is not: their order is swapped', remedy, "method")
-
-
-def check_no_methods(words: Sequence[str], methods: Sequence[str] | None) -> None:
-    """Refuse words in the place of cases that are names of methods, as of a list without commas.
-
-    Raises:
-        InputError: one is a method, and there is no such file.
-    """
-    found = [word for word in words if word in method_names() and not Path(word).exists()]
-    if found:
-        asked = ",".join(dict.fromkeys([*(methods or ()), *found]))
-        raise InputError(
-            f'"{found[0]}" is a method and no case', f"Separate methods by commas: --methods {asked}", "cases"
-        )
 
 
 def check_taken(method: Method, case: Case, option: str = "") -> None:
@@ -133,20 +93,6 @@ def takers(case: Case, names: Sequence[str]) -> list[str]:
             check_takes(load_method(name), case.assembly)
             found.append(name)
     return found
-
-
-def check_shares(method: Method, processes: int) -> None:
-    """Refuse more than one process for a method that makes its runs in one.
-
-    Raises:
-        InputError: that is so.
-    """
-    if processes > 1 and not method.shares_work:
-        raise InputError(
-            f"{method.name} makes a run in one process: its parts begin with what those before them found",
-            "Leave it out; several runs go side by side in `drystone compare` and `drystone sweep`",
-            "--jobs",
-        )
 
 
 def find_cases(

@@ -34,7 +34,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.engine.bar_checks import bars_at_work, dissipated_by_bars, outside_range
+from harness.engine.bar_checks import bars_at_work, dissipated_by_bars
 from harness.engine.crushing import block_excess, block_power
 from harness.engine.judge_law import (
     beyond_lift,
@@ -45,6 +45,7 @@ from harness.engine.judge_law import (
 )
 from harness.engine.measures import Measures, between, exact_sum, magnitudes
 from harness.model.assembly import Assembly, FloatArray
+from harness.model.bars import Bars
 from harness.model.components import Component, components_of
 from harness.model.displaced import DisplacedState
 from harness.model.result import fastest_vertex, relative_velocities
@@ -118,7 +119,7 @@ def force_residuals(
     }
     if beyond is not None:
         bars = assembly.bars
-        outside = outside_range(bars, beyond)
+        outside = _outside_range(bars, beyond)
         acting, own = (between(assembly, part, bars) for part in (measures.acting, measures.own))
         found["bars"] = float(measures.relative(outside, acting, own).max(initial=0.0))
     return found
@@ -355,3 +356,8 @@ def _mechanism_residuals(
         residuals["complementarity"] = idle_work / live_work / size
         residuals["virtual_work"] = abs(by_virtual_work - multiplier) / size
     return residuals
+
+
+def _outside_range(bars: Bars, beyond: FloatArray) -> FloatArray:
+    """(k,) tension beyond the range of each bar [force]."""
+    return np.asarray(np.maximum(0.0, np.maximum(bars.least - beyond, beyond - bars.greatest)))

@@ -8,10 +8,11 @@ from itertools import groupby
 import numpy as np
 
 from harness.engine.pipeline import Runs
+from harness.model import geometry
 from harness.model.assembly import Assembly
-from harness.model.blocks import typical_block_size
+from harness.model.blocks import blocks_of_wall, polygons_of, support_faults
 from harness.model.case import Case, CaseFile
-from harness.model.errors import InputError
+from harness.model.errors import InputError, raise_faults
 from harness.model.inspection import Inspection
 from harness.model.interfaces import DEFAULT_TOLERANCE
 from harness.model.load_cases import named_loads, under_load_case
@@ -64,7 +65,7 @@ def over_tolerance(wall: Wall, method: str = "", runs: Runs = Runs()) -> list[Pl
         known = named_loads(wall)
         wall = under_load_case(wall, next(iter(known)), known)
     detection = wall.interfaces if isinstance(wall.interfaces, Detection) else Detection()
-    size = typical_block_size(wall)
+    size = _typical_block_size(wall)
     decades = np.log10(_WIDEST / DEFAULT_TOLERANCE)
     tried: list[tuple[float, Case, Assembly | str]] = []
     for tolerance in np.geomspace(DEFAULT_TOLERANCE * size, _WIDEST * size, round(decades * _A_DECADE) + 1).tolist():
@@ -123,3 +124,15 @@ def _said(result: Result) -> str:
         return f"{result.status}: {result.sentence}"
     value = f"{result.multiplier:.6g}{bound_in_words(result)}" if result.multiplier is not None else str(result.finding)
     return value if result.judge.accepted else f"{value} ({result.judge.outcome.replace('_', ' ')})"
+
+
+def _typical_block_size(wall: Wall) -> float:
+    """The length that tolerances are measured by: the median over the free blocks of the square root of the area.
+
+    Raises:
+        InputError: a block is no polygon, or none is free.
+    """
+    blocks = blocks_of_wall(wall)
+    raise_faults(support_faults(np.array([block.fixed for block in blocks], dtype=bool)))
+    free = polygons_of([block for block in blocks if not block.fixed])
+    return geometry.typical_size(geometry.shapes_of(free))

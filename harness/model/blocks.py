@@ -18,18 +18,6 @@ from harness.model.rings import hole_faults, ringed
 from harness.model.wall import Block, Wall
 
 
-def typical_block_size(wall: Wall) -> float:
-    """The length that tolerances are measured by: the median over the free blocks of the square root of the area.
-
-    Raises:
-        InputError: a block is no polygon, or none is free.
-    """
-    blocks = blocks_of_wall(wall)
-    raise_faults(support_faults(np.array([block.fixed for block in blocks], dtype=bool)))
-    free = polygons_of([block for block in blocks if not block.fixed])
-    return geometry.typical_size(geometry.shapes_of(free))
-
-
 def blocks_of_wall(wall: Wall) -> list[Block]:
     """All blocks of a wall, those of its patterns first.
 

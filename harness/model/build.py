@@ -17,14 +17,7 @@ from harness.model.friction_rules import JointLaws, laws_of_joints
 from harness.model.input_checks import input_warnings, thickness_of
 from harness.model.laid import Laid, lay
 from harness.model.load_fields import Load, Loads
-from harness.model.loads import (
-    check_pairs,
-    dead_load,
-    fill_as_bars,
-    generalised_load,
-    has_pressures,
-    with_pressures,
-)
+from harness.model.loads import check_pairs, dead_load, fill_as_bars, generalised_load, with_pressures
 from harness.model.names import faults_of_wall, names_of_bars
 from harness.model.plausibility import contact_warnings, force_warnings, interface_warnings, near_misses
 from harness.model.wall import Block, Inset, Interface, Wall
@@ -116,7 +109,7 @@ def build(wall: Wall, name: str = "wall", laid: Laid | None = None) -> Built:
         dead=dead_load(wall.loads, laid),
         live=generalised_load(wall.loads.live or Load(), laid),
     )
-    if has_pressures(wall.loads):
+    if _has_pressures(wall.loads):
         assembly = with_pressures(wall, laid, assembly)
     if wall.settlements:
         assembly = replace(assembly, support_motion=_support_motion(wall, laid))
@@ -321,3 +314,8 @@ def _explicit(
             ],
         }
     )
+
+
+def _has_pressures(loads: Loads) -> bool:
+    """Whether any load presses on faces."""
+    return any(load.pressures or load.fills for load in (loads.dead, loads.live or Load()))

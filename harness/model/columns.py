@@ -9,9 +9,10 @@ from operator import attrgetter
 from typing import Any
 
 from harness.model.case import Reference
-from harness.model.proof import Proof
+from harness.model.method import Status
+from harness.model.proof import Proof, Standing
 from harness.model.result import Comparison, Result, plastic_and_residual_of
-from harness.model.result_texts import VERDICT_TEXTS, multiplier_text, references_text, residual_text, settings_text
+from harness.model.result_texts import PROVED, VERDICT_TEXTS, answer_text, references_text, settings_text
 from harness.model.table import TableColumn
 
 
@@ -82,7 +83,7 @@ RESULTS: tuple[ResultColumn, ...] = (
         "1",
         "of the live load at collapse",
         attrgetter("result.multiplier"),
-        words=lambda row: multiplier_text(row.result, row.proof),
+        words=lambda row: _multiplier_text(row.result, row.proof),
     ),
     ResultColumn("bracket_low", "Float64", "1", "lower end of the bracket", _end(0)),
     ResultColumn("bracket_high", "Float64", "1", "upper end of the bracket", _end(1)),
@@ -148,7 +149,7 @@ RESULTS: tuple[ResultColumn, ...] = (
         "the worst relative residual found",
         _worst(1),
         "judge residual",
-        lambda row: residual_text(row.result),
+        lambda row: _residual_text(row.result),
     ),
     _text("judge_worst_residual_name", "which residual that is", _worst(0)),
     _text("judge_sentence", "what was judged, and what failed", attrgetter("result.judge.sentence")),
@@ -244,3 +245,16 @@ COMPARISONS: tuple[ComparisonColumn, ...] = (
 _COMPARED = ("case", "method", "quantity", "value", "expected", "tolerance", "verdict", "requirement")
 COMPARED = tuple(column for column in COMPARISONS if column.name in _COMPARED)
 """Columns of the tables of references in the report."""
+
+
+def _multiplier_text(result: Result, proof: Proof) -> str:
+    """The answer with the sign of a proved minimum before it."""
+    answer = answer_text(result)
+    return f"{PROVED} {answer}" if proof.standing is Standing.MINIMUM else answer
+
+
+def _residual_text(result: Result) -> str:
+    """The worst residual, and a mark unless the judge accepts the answer."""
+    worst = result.judge.worst
+    mark = {True: "", False: " ✗", None: " not judged" if result.status is Status.OK else ""}[result.judge.accepted]
+    return ("-" if worst is None and not mark else "" if worst is None else f"{worst[1]:.1e}") + mark

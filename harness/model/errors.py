@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
-from itertools import accumulate, islice
+from itertools import accumulate
 from typing import Any, TypeVar
 
 Item = TypeVar("Item")
@@ -179,17 +179,6 @@ def in_file(source: str) -> Iterator[None]:
         raise
 
 
-def of_each(make: Callable[[Item], Made], items: Iterable[Item]) -> list[Made]:
-    """What is made of every item; the faults of all items are reported together.
-
-    Raises:
-        InputError: the one fault, or `InputFaults` of all.
-    """
-    faults, made = sorted_out(make, items)
-    raise_faults(faults)
-    return list(made.values())
-
-
 def sorted_out(make: Callable[[Item], Made], items: Iterable[Item]) -> tuple[list[InputError], dict[int, Made]]:
     """The faults of items that nothing can be made of, and what is made of the others, by their numbers."""
     faults: list[InputError] = []
@@ -242,20 +231,6 @@ class Hints:
     def there(self, most: int) -> str:
         """So many of the names in words."""
         return first_few(self._all, most)
-
-
-def first_worded(faults: Iterable[InputError], more: str, element: str) -> list[InputError]:
-    """The first of many faults of one kind, and a last one that says how many more there are.
-
-    Args:
-        faults: made one by one, so that thousands take no memory.
-        more: what the others are, in words; element: what they are about.
-    """
-    waiting = iter(faults)
-    found = list(islice(waiting, MOST_WORDED))
-    if count := sum(1 for _ in waiting):
-        found.append(uncounted(count, more, element))
-    return found
 
 
 def uncounted(count: int, more: str, element: str) -> InputError:

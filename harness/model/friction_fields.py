@@ -76,12 +76,6 @@ def is_brittle(given: JointStrength) -> bool:
     return given.after == "residual"
 
 
-def gives_strength(given: JointStrength) -> bool:
-    """Whether any strength is given."""
-    strengths = given.cohesion, given.tensile_strength, given.compressive_strength, given.after
-    return any(value is not None for value in strengths)
-
-
 def check_strength(given: JointStrength, friction: float) -> None:
     """A joint bears no tension at which its shear strength would be used up already, but for rounding."""
     cohesion, tension, _ = stresses_of(given)

@@ -86,11 +86,6 @@ def check_pairs(load: Load, blocks: Sequence[Block]) -> None:
             raise InputError(f"{what}, and at most {_MOST_PAIRS:,} are summed up", remedy, "loads")
 
 
-def has_pressures(loads: Loads) -> bool:
-    """Whether any load presses on faces."""
-    return any(load.pressures or load.fills for load in (loads.dead, loads.live or Load()))
-
-
 def with_pressures(wall: Wall, laid: Laid, assembly: Assembly) -> Assembly:
     """The assembly with the pressures and fills of the wall added to its loads.
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from harness.model.assembly import Assembly
 from harness.model.errors import InputError, MissingPackage, first_few
-from harness.model.foreign.program_method import method_named
-from harness.model.foreign.register import programs
+from harness.model.foreign.program_method import ProgramMethod, method_of
+from harness.model.foreign.register import program_named, programs
 from harness.model.method import OF_COMMANDS, UNLISTED, Method, method_points
 
 
@@ -129,7 +129,7 @@ def load_method(name: str) -> Method:
             brought = point.load()
             made = brought() if callable(brought) else brought
         return checked_method(made, f"method {name}")
-    found = method_named(name)
+    found = _method_named(name)
     if found is None:
         raise KeyError(f"no method is called {name!r}; there are: {', '.join(listed_methods())}")
     return found
@@ -174,3 +174,13 @@ def _loading(name: str) -> Iterator[None]:
             "Install what it needs, or uninstall the package that brings it",
             f"method {name}",
         ) from error
+
+
+def _method_named(name: str) -> ProgramMethod | None:
+    """The method of the program of this name in the file of methods; None where there is none.
+
+    Raises:
+        InputError: as of `ProgramMethod`.
+    """
+    program = program_named(name)
+    return None if program is None else method_of(program)

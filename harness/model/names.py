@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import Any
 
-from harness.model.errors import MOST_NAMED, Hints, InputError, Spot, first_worded
+from harness.model.errors import MOST_NAMED, MOST_WORDED, Hints, InputError, Spot, uncounted
 from harness.model.friction_fields import Friction
 from harness.model.load_fields import Load
 from harness.model.pressure_fields import Fill, Pressure
@@ -28,10 +29,10 @@ def _name_faults(blocks: Iterable[tuple[str, str]], named: Iterable[tuple[str, s
                 yield InputError("two blocks have this id", remedy, place, spot=Spot((name,)))
             seen.add(name)
 
-    found = first_worded(twice(), "blocks have the id of another", "blocks")
+    found = _first_worded(twice(), "blocks have the id of another", "blocks")
     hints = Hints(seen)
     unknown = (unknown_block(name, place, hints) for place, name in named if name not in seen)
-    return found + first_worded(unknown, "names are of no block", "wall")
+    return found + _first_worded(unknown, "names are of no block", "wall")
 
 
 def unknown_block(name: str, place: str, hints: Hints) -> InputError:
@@ -49,10 +50,10 @@ def faults_of_wall(wall: Wall, blocks: list[Block]) -> list[InputError]:
 def _groups_and_supports(wall: Wall, blocks: list[Block]) -> list[InputError]:
     """Loads of groups that no block is in, and of blocks and bars that cannot move."""
     fixed = {block.id for block in blocks if block.fixed}
-    faults = first_worded(_unknown_groups(wall, blocks), "loads name groups that no block is in", "loads")
-    faults += first_worded(_loads_on_supports(wall, fixed), "loads are on fixed blocks", "loads")
-    faults += first_worded(_bars_between_supports(wall, fixed), "bars join two fixed blocks", "wall")
-    return faults + first_worded(_bars_of_one_name(wall), "bars have the name of another", "wall")
+    faults = _first_worded(_unknown_groups(wall, blocks), "loads name groups that no block is in", "loads")
+    faults += _first_worded(_loads_on_supports(wall, fixed), "loads are on fixed blocks", "loads")
+    faults += _first_worded(_bars_between_supports(wall, fixed), "bars join two fixed blocks", "wall")
+    return faults + _first_worded(_bars_of_one_name(wall), "bars have the name of another", "wall")
 
 
 def _loads_of(wall: Wall) -> tuple[tuple[str, Load], tuple[str, Load]]:
@@ -183,3 +184,17 @@ def faults_of_data(data: dict[str, Any]) -> list[InputError]:
 def _list(data: dict[str, Any], name: str) -> list[dict[str, Any]]:
     items = data.get(name)
     return [item for item in items if isinstance(item, dict)] if isinstance(items, list) else []
+
+
+def _first_worded(faults: Iterable[InputError], more: str, element: str) -> list[InputError]:
+    """The first of many faults of one kind, and a last one that says how many more there are.
+
+    Args:
+        faults: made one by one, so that thousands take no memory.
+        more: what the others are, in words; element: what they are about.
+    """
+    waiting = iter(faults)
+    found = list(islice(waiting, MOST_WORDED))
+    if count := sum(1 for _ in waiting):
+        found.append(uncounted(count, more, element))
+    return found

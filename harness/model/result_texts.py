@@ -7,7 +7,6 @@ import math
 from typing import Any
 
 from harness.model.method import Finding, Status
-from harness.model.proof import Proof, Standing
 from harness.model.result import Result, Verdict, plastic_of, residual_of
 
 PROVED = "∎"
@@ -19,12 +18,6 @@ VERDICT_TEXTS: dict[Verdict, str] = {
     Verdict.VIOLATES_BOUND: "✗ violates bound",
     Verdict.NO_REFERENCE: "· no reference",
 }
-
-
-def multiplier_text(result: Result, proof: Proof) -> str:
-    """The answer with the sign of a proved minimum before it."""
-    answer = answer_text(result)
-    return f"{PROVED} {answer}" if proof.standing is Standing.MINIMUM else answer
 
 
 def answer_text(result: Result) -> str:
@@ -84,13 +77,6 @@ def references_text(result: Result) -> str:
         own = (result.multiplier, list(result.bracket or ()), str(result.finding))
         shown.append(text if comparison.value in own else f"{text} (other settings)")
     return ", ".join(dict.fromkeys(shown))
-
-
-def residual_text(result: Result) -> str:
-    """The worst residual, and a mark unless the judge accepts the answer."""
-    worst = result.judge.worst
-    mark = {True: "", False: " ✗", None: " not judged" if result.status is Status.OK else ""}[result.judge.accepted]
-    return ("-" if worst is None and not mark else "" if worst is None else f"{worst[1]:.1e}") + mark
 
 
 def settings_text(values: dict[str, Any]) -> str:

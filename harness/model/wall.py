@@ -34,11 +34,11 @@ from harness.model.friction_fields import (
     CompressiveStrength,
     Dilatancy,
     Friction,
+    JointStrength,
     TensileStrength,
     check_dilatancy,
     check_strength,
     coefficient_of,
-    gives_strength,
 )
 from harness.model.load_fields import DEAD, Combination, Loads, Travelling
 from harness.model.pattern_fields import Pattern
@@ -164,7 +164,7 @@ class Interface(Strict):
             check_strength(self, friction)
         elif self.dilatancy is not None:
             raise ValueError("an interface gives dilatancy beside a friction of its own")
-        elif gives_strength(self):
+        elif _gives_strength(self):
             raise ValueError(
                 "an interface gives cohesion, tensile and compressive strength beside a friction of its own"
             )
@@ -279,7 +279,7 @@ class Wall(Strict):
         if self.friction is not None and self.friction_angle is not None:
             raise ValueError("a wall gives either friction or friction_angle")
         if isinstance(self.friction, Friction):
-            if gives_strength(self):
+            if _gives_strength(self):
                 raise ValueError(
                     "friction by rules holds the cohesion, tensile and compressive strength too: give them beside "
                     '"default" or in a rule'
@@ -337,3 +337,9 @@ class Wall(Strict):
         if self.units_declared and "units" not in data:
             data["units"] = self.units.model_dump(mode="json", exclude_none=True)
         return {"format": "wall/1"} | data
+
+
+def _gives_strength(given: JointStrength) -> bool:
+    """Whether any strength is given."""
+    strengths = given.cohesion, given.tensile_strength, given.compressive_strength, given.after
+    return any(value is not None for value in strengths)

@@ -8,15 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import Assembly, IntArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.deadline import best_so_far
 from harness.model.details import MOVING_FORCES
 from harness.model.method import Answer, Finding, Status
 from methods.de.engines.engine import Engine
 from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
 from methods.de.holds.bracket_state import BracketState, stopped_answer
+from methods.de.holds.load_step import hold, settle
 from methods.de.holds.motion import StaticLimit
-from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket, held_forces, mechanism_at
+from methods.de.holds.order_bracket import LOOSE, BracketSearch, OrderBracket
 from methods.de.settings import HoldSettings
 
 _BRACKET_MEANING = (
@@ -91,7 +92,7 @@ def _with_state(
     answer: Answer, engine: Engine, settings: HoldSettings, statics: StaticLimit, best: OrderBracket
 ) -> Answer:
     """The answer with the contact forces, the motion and the way of the order that is reported."""
-    forces, residual = held_forces(engine, settings, best)
+    forces, residual = _held_forces(engine, settings, best)
     answer = replace(
         answer,
         forces=forces,
@@ -100,7 +101,7 @@ def _with_state(
         path=best.path,
     )
     if answer.finding is Finding.COLLAPSES:
-        answer.mechanism, forces = mechanism_at(engine, settings, statics, best)
+        answer.mechanism, forces = _mechanism_at(engine, settings, statics, best)
         answer.flow = "approximate"
         answer.details[MOVING_FORCES] = forces.tolist()
     answer.iterations += engine.steps
@@ -240,3 +241,30 @@ def _collapse(brackets: list[OrderBracket]) -> Answer:
         bracket=(low, high),
         bracket_meaning=_BRACKET_MEANING,
     )
+
+
+def _held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> tuple[FloatArray, float]:
+    """Contact forces (m, 3) at the highest held state, followed until it no longer settles, and its residual."""
+    assert found.held is not None
+    assert found.state is not None
+    engine.restore(found.state)
+    engine.load(found.held)
+    engine.advance(2 * max(10, round(engine.relaxation / 3.0)))
+    residual = settle(engine, settings)
+    return engine.contact_forces(), residual
+
+
+def _mechanism_at(
+    engine: Engine, settings: HoldSettings, statics: StaticLimit, found: OrderBracket, excess: float = 1.02
+) -> tuple[FloatArray, FloatArray]:
+    """Velocity field (n, 3) from the highest held state and the contact forces (m, 3) that were measured with it.
+
+    It is that at `excess` times the middle of the bracket, or where it moves if nothing is held.
+    """
+    assert found.middle is not None
+    assert found.moving is not None
+    assert found.state is not None
+    engine.restore(found.state)
+    engine.load(found.moving if found.nothing else excess * found.middle)
+    velocity = hold(engine, settings, statics).velocity
+    return velocity, engine.contact_forces()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,8 +14,8 @@ from methods.de.answers import solve_by_holds
 from methods.de.crushing import held_within_tangents
 from methods.de.engines.box2d_joints import Box2dJoints, load_box2d
 from methods.de.engines.engine import Engine, motion_units
-from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, tunings
-from methods.de.engines.mujoco_wall import MujocoWall, SolverFailed, load_mujoco, mujoco_tunings
+from methods.de.engines.mass_scaling import MassScaling, courses, insertion_orders, is_chain, lighter_upwards, tunings
+from methods.de.engines.mujoco_wall import MujocoTuning, MujocoWall, SolverFailed, load_mujoco
 from methods.de.engines.pymunk_joints import PymunkJoints
 from methods.de.engines.sequential_impulses import SequentialImpulses
 from methods.de.engines.strips import CannotModel
@@ -75,7 +76,7 @@ class MujocoHolds(Solver):
         return analysed(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: MujocoSettings) -> Answer:
-        candidates = mujoco_tunings(assembly, settings)
+        candidates = _mujoco_tunings(assembly, settings)
         soft = dict(candidates)
 
         def engine(blocks: IntArray, joints: IntArray, tuning: MassScaling) -> MujocoWall:
@@ -149,3 +150,16 @@ class ReleasedCollapse(Solver):
         end = "until a block had moved far enough" if collapse.reached else "without such a displacement"
         answer.sentence += f"; released at {multiplier:.6g} and followed {end}: {len(pairs)} interfaces separated"
         return answer
+
+
+def _mujoco_tunings(
+    assembly: Assembly, settings: MujocoSettings, options: MujocoTuning = MujocoTuning()
+) -> list[tuple[MassScaling, float]]:
+    """Tunings with their impedances, in the order in which they are tried: light tops first."""
+    course, contacts = courses(assembly), options.contacts
+    tuning = lighter_upwards(course)
+    usual = contacts.chain_impedance if is_chain(course) else contacts.wall_impedance
+    impedance = settings.impedance or usual
+    if settings.mass_decay is not None:
+        return [(replace(tuning, mass_decay=settings.mass_decay), impedance)]
+    return [(tuning, impedance), (options.uniform, settings.impedance or contacts.wall_impedance)]

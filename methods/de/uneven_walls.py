@@ -18,8 +18,9 @@ from harness.model.assembly import Assembly
 from harness.model.method import Answer, Finding, Solver, Status
 from harness.model.method_registry import load_method
 from harness.model.rings import rings_of
+from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.settings import REACH, ClosedSettings, UnevenSettings
-from methods.de.uneven.gapped import GappedWall, load_gapped
+from methods.de.uneven.gapped import GappedWall
 from methods.de.uneven.settled_contacts import Loading, load_uneven, settle_uneven
 
 _BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
@@ -86,7 +87,7 @@ class ClosedContacts(Solver):
         except ValueError as error:
             return Answer(Status.REFUSED, Finding.NONE, f"Its gaps cannot be measured: {error}.")
         began = time.process_time()
-        loaded = load_gapped(gapped, settings.greatest, settings.step, settings.accuracy)
+        loaded = _load_gapped(gapped, settings.greatest, settings.step, settings.accuracy)
         details["loading"] = {"cpu_seconds": time.process_time() - began, "drift": gapped.drift}
         details["analyses"] = {name: _analysed(name, settled.assembly) for name in settings.alone}
         if settings.compare:
@@ -141,3 +142,19 @@ def _loaded(assembly: Assembly, settings: ClosedSettings) -> dict[str, Any]:
         assembly, settings.size, settings.faces, settings.seed, settings.greatest, accuracy=settings.accuracy
     )
     return {"stood": found.stood, "fell": found.fell, "cpu_seconds": time.process_time() - began}
+
+
+def _load_gapped(wall: GappedWall, greatest: float, step: float, accuracy: float) -> tuple[float, float | None] | None:
+    """The highest multiplier at which the wall came to rest and the lowest at which it is shown to move, if any.
+
+    Args:
+        wall: the wall, which stays at its last rest.
+        greatest, step, accuracy: as in `raise_until_it_falls`.
+
+    Returns:
+        None where it does not come to rest under its dead load.
+    """
+    if not wall.rests(0.0):
+        return None
+    ends = raise_until_it_falls(wall.rests, greatest, step, accuracy)
+    return shown_to_fall(wall.rests, wall.moved, ends, greatest, accuracy)

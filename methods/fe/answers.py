@@ -27,11 +27,6 @@ SPREAD = 0.025
 """Spread of the histories, as a share of the multiplier, above which the sentence of an answer reports it."""
 
 
-def refused(why: str) -> Answer:
-    """The answer of a method that does not take a wall, or not with these settings."""
-    return Answer(Status.REFUSED, Finding.NONE, why, details={"path_status": "refused"})
-
-
 def gravity_failure(model: WallModel, gravity: Equilibrium) -> Answer:
     """The answer for a wall that falls under its dead load, or for a gravity step that did not end."""
     if not np.any(gravity.rate):

@@ -18,14 +18,13 @@ from methods.fe.answers import (
     compact,
     falling,
     gravity_failure,
-    refused,
     single_state_answer,
     standing_answer,
     stands,
 )
 from methods.fe.brittle import brittle_answer
 from methods.fe.convex_steps import bracket_collapse
-from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history, with_initial_shear
+from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings
 from methods.numerics.crushing_claims import falls_by_statics
@@ -62,21 +61,14 @@ load_kernels()
 
 
 class GapSprings(Solver):
-    """Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`).
-
-    Args:
-        histories: what is tried where one is lost.
-    """
-
-    def __init__(self, histories: HistoryTuning = HistoryTuning()) -> None:
-        self._histories = histories
+    """Gap-spring finite elements with the path traced exactly, breakpoint by breakpoint (`fe`)."""
 
     def solve(self, assembly: Assembly, settings: Any) -> Answer:
         """Gravity first, then the live load to the plateau under every history asked for."""
         if assembly.breaks:
             events = _FEWEST + _FIRST * settings.points * assembly.n_interfaces
             most = settings.max_events or events
-            return brittle_answer(assembly, settings, _unit(assembly), most, self._histories)
+            return brittle_answer(assembly, settings, _unit(assembly), most)
         return by_component(assembly, lambda part: self._of_component(part, settings))
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
@@ -89,7 +81,7 @@ class GapSprings(Solver):
 
     def _solve(self, model: WallModel, settings: GapSpringsSettings) -> Answer:
         if model.dilates and any(settings.histories or ()):
-            return refused(
+            return _refused(
                 "the plastic slip is not updated where joints dilate, because its lift would have to be too: leave "
                 "`histories` out, or give 0 alone"
             )
@@ -100,19 +92,19 @@ class GapSprings(Solver):
         if not model.assembly.has_live_load:
             return stands(model, gravity)
         if settings.initial_shear > 0.0:
-            model = with_initial_shear(model, gravity, settings.initial_shear, settings.seed)
+            model = _with_initial_shear(model, gravity, settings.initial_shear, settings.seed)
             gravity = equilibrium(model, factor, gravity.u, 0.0, model.history)
             if not gravity.found:
                 return gravity_failure(model, gravity)
         results, start = list[HistoryResult](), gravity
         scale = _unit(model.assembly)
-        histories = self._histories
+        tuning = HistoryTuning()
         limits = [settings.max_events or _FEWEST + count * model.n_points for count in (_FIRST, _FURTHER)]
         limit = limits[0]
         for step in _chosen_histories(model, settings):
             if settings.histories is None and _agree(results, _AGREEING):
                 break
-            plan = HistoryPlan(step, scale, limit, load_steps=settings.load_steps, options=histories)
+            plan = HistoryPlan(step, scale, limit, load_steps=settings.load_steps, options=tuning)
             result = trace_history(model, factor, start, plan)
             results.append(result)
             start = result.raised or start
@@ -126,7 +118,7 @@ class GapSprings(Solver):
                 limit = min(limit, _FEWEST_BESIDE + _MULTIPLE * result.record.events)
         answer = collapse_answer(model, results, factor.factorisations, settings.load_steps)
         lost = results and all(r.state is None and r.end is PathEnd.BREAKDOWN for r in results)
-        if lost and model.assembly.n_free <= histories.large:
+        if lost and model.assembly.n_free <= tuning.large:
             return _by_displacement_control(model, factor, gravity, answer)
         return answer
 
@@ -222,7 +214,7 @@ class ConvexSteps(Solver):
 
     def _of_component(self, assembly: Assembly, settings: Any) -> Answer:
         if assembly.n_free > settings.max_blocks:
-            return refused(
+            return _refused(
                 f"{assembly.n_free} blocks: the convex steps are a cross-check for up to {settings.max_blocks} blocks, "
                 "above which their fixed-point iteration is too slow; use fe"
             )
@@ -245,3 +237,16 @@ class ConvexSteps(Solver):
         if not assembly.has_live_load:
             return standing_answer(forces, result.programmes, details | {"path_status": "stands"})
         return bracket_answer(result, forces, details)
+
+
+def _refused(why: str) -> Answer:
+    """The answer of a method that does not take a wall, or not with these settings."""
+    return Answer(Status.REFUSED, Finding.NONE, why, details={"path_status": "refused"})
+
+
+def _with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:
+    """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
+    normal, _ = model.forces(gravity.u, gravity.history, gravity.state)
+    noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
+    frozen = model.law.part_by_friction(noise, normal)
+    return replace(model, history=model.updated(frozen, model.history))

@@ -278,11 +278,3 @@ def _load_step(model: WallModel, rest: Equilibrium) -> PathStep:
     """An equilibrium, kept whole."""
     opening, slip = model.strains(rest.u)
     return PathStep(rest.multiplier, rest.u, opening, model.kt * slip + rest.history, rest.state)
-
-
-def with_initial_shear(model: WallModel, gravity: Equilibrium, share: float, seed: int) -> WallModel:
-    """The model with shears frozen in before the live load: a random share of what friction holds under gravity."""
-    normal, _ = model.forces(gravity.u, gravity.history, gravity.state)
-    noise = np.random.default_rng(seed).uniform(-share, share, model.n_points)
-    frozen = model.law.part_by_friction(noise, normal)
-    return replace(model, history=model.updated(frozen, model.history))

@@ -14,7 +14,7 @@ from harness.model.deadline import best_so_far
 from harness.model.errors import as_sentence
 from harness.model.limit import accuracy, gross_power, smallest_resolved, strengthened
 from harness.model.method import Answer, Finding, Status
-from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier, strength_power
+from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
 
 _SMALL = 1e-3
 """Live load, as a part of the dead load, below which a load that was measured leaves the limit to statics."""
@@ -98,7 +98,7 @@ def _leaves_open(assembly: Assembly, answer: Answer) -> bool:
             return low <= _SMALL * assembly.load_unit
         return low <= smallest_resolved(assembly, mechanism)
     if answer.finding is Finding.FALLS and answer.flow == "associated" and mechanism is not None:
-        gain = float((assembly.dead * mechanism).sum()) - strength_power(assembly, mechanism)
+        gain = float((assembly.dead * mechanism).sum()) - _strength_power(assembly, mechanism)
         return gain <= accuracy(assembly) * gross_power(assembly, mechanism)
     stopped = bool(answer.details.get("stopped_by_limit"))
     return answer.finding is Finding.FALLS or (answer.finding is Finding.NONE and not stopped)
@@ -321,3 +321,9 @@ def growing_forces(assembly: Assembly) -> FloatArray | None:
     growth = np.zeros((assembly.n_interfaces, 3))
     growth[rigid] = dry.law.within(found)
     return growth
+
+
+def _strength_power(assembly: Assembly, mechanism: FloatArray) -> float:
+    """Power that cohesion and tensile strength take on a dilatant mechanism (n, 3) [force x velocity]."""
+    strains = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3)
+    return assembly.law.associated.dissipation(assembly.law.associated.rates(strains))

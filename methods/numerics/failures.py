@@ -16,10 +16,6 @@ class SingularMatrix(NumericalFailure):
     """A matrix is singular to rounding."""
 
 
-class NoMechanism(NumericalFailure):
-    """No mechanism with live work moves in the given contacts only."""
-
-
 def sparse_lu(matrix: sp.csc_matrix, **options: Any) -> SuperLU:
     """The sparse LU factors of a square matrix, with the options of `scipy.sparse.linalg.splu`.
 

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 from harness.model.assembly import Assembly, FloatArray
 from methods.numerics.shear_rows import COST, least_shear_slacks, rows_of_blocks, shear_limits
+from methods.numerics.stress_blocks import greatest_by_chords
 
 if TYPE_CHECKING:
     from methods.numerics.vertex import Vertex
@@ -20,26 +21,6 @@ _LEAST_WORK = 1e-7
 """Work of the dead load that shows a fall, as total weight times speed: a programme to 1e-9 makes up less."""
 _LEAST_EXACT_WORK = 1e-8
 """The same of a mechanism to rounding: on its closings, some 1e-16 a contact, forces of 1e7 dead loads do no more."""
-
-
-def out_of_balance(assembly: Assembly, forces: FloatArray, load: FloatArray) -> FloatArray:
-    """(n_free,) largest force or moment left over on each free block, as a share of all that acts on it.
-
-    Moments count divided by the radius of the block. A block on which nothing acts is in balance.
-
-    Args:
-        assembly: the wall.
-        forces: (m, 3) contact forces (n1, n2, s) [force].
-        load: (n, 3) loads on the blocks [force, force, moment].
-    """
-    left = (assembly.kinematic_matrix.T @ forces.ravel() + load[assembly.free].ravel()).reshape(-1, 3)
-    left[:, 2] /= assembly.radius[assembly.free]
-    acting = np.hypot(load[:, 0], load[:, 1]) + abs(load[:, 2]) / assembly.radius
-    for side in (assembly.block_a, assembly.block_b):
-        np.add.at(acting, side, abs(forces).sum(axis=1))
-    own = acting[assembly.free]
-    share: FloatArray = abs(left).max(axis=1) / np.where(own > 0.0, own, 1.0)
-    return share
 
 
 def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None:
@@ -55,9 +36,7 @@ def admissible_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None
     if m == 0:
         return None
     if assembly.crushes:
-        from methods.numerics.stress_blocks import borne_forces  # which few answers need
-
-        return borne_forces(assembly, load)
+        return _borne_forces(assembly, load)
     vertex, unit = _vertex_of_forces(assembly, load)
     return None if vertex is None else assembly.law.in_units(unit).within(vertex.value.reshape(-1, 3)) * unit
 
@@ -120,12 +99,6 @@ def _vertex_of_forces(
     return (vertex if vertex is not None and vertex.optimal else None), unit
 
 
-def strength_power(assembly: Assembly, mechanism: FloatArray) -> float:
-    """Power that cohesion and tensile strength take on a dilatant mechanism (n, 3) [force x velocity]."""
-    strains = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3)
-    return assembly.law.associated.dissipation(assembly.law.associated.rates(strains))
-
-
 def dilatant_mechanism(
     assembly: Assembly,
     load: FloatArray,
@@ -172,3 +145,15 @@ def dilatant_mechanism(
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)
     return mechanism
+
+
+def _borne_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None:
+    """Contact forces (m, 3) within yield in equilibrium with a load (n, 3); None if there are none.
+
+    No forces are within yield, which is convex: so those of the greatest multiple of the load, if it is one or more,
+    divided by it.
+    """
+    found = greatest_by_chords(assembly, np.zeros_like(load), load, 2.0)
+    if found.forces is None or not found.multiplier >= 1.0:
+        return None
+    return found.forces / found.multiplier

@@ -104,18 +104,6 @@ def greatest_by_chords(
     return best
 
 
-def borne_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None:
-    """Contact forces (m, 3) within yield in equilibrium with a load (n, 3); None if there are none.
-
-    No forces are within yield, which is convex: so those of the greatest multiple of the load, if it is one or more,
-    divided by it.
-    """
-    found = greatest_by_chords(assembly, np.zeros_like(load), load, 2.0)
-    if found.forces is None or not found.multiplier >= 1.0:
-        return None
-    return found.forces / found.multiplier
-
-
 @dataclass(frozen=True, eq=False)
 class _Found:
     """The solution of one programme: its multiplier, forces (m, 3) [force] and motion (n, 3) dual to them."""

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass, field
 
 from markupsafe import Markup
 
-from harness.model.writing import csv_text
 from reports.charts.styles import Mark
 from reports.labels import numbers
 
@@ -198,17 +196,6 @@ class DrawnChart(Markup):
     """A chart as an SVG element that still knows what it shows, so that its data can be written beside it."""
 
     chart: Chart | None = None
-
-
-def csv_of(chart: Chart) -> str:
-    """The data of a chart: one row a point, with the ends of its bar where it has one."""
-    fitted = ("fitted",) if any(series.curve for series in chart.series) else ()
-    rows: list[tuple[object, ...]] = []
-    for series in chart.series:
-        columns = (series.x, series.y, series.low, series.high, *((series.curve,) if fitted else ()))
-        rows += [(series.name, *values) for values in itertools.zip_longest(*columns)]
-    rows += [(name, None, value, None, None) for name, value in chart.levels]
-    return csv_text(("series", chart.x_label, chart.y_label, "low", "high", *fitted), rows)
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ from reports.drawing.display_list import (
 )
 from reports.drawing.wall_drawing import length_scale
 from reports.geometry import shapes, thrust_lines
+from reports.geometry.shapes import Thrusts
 from reports.labels import numbers
 from reports.memo import memo
 
@@ -120,7 +121,7 @@ def _arrows(ends: FloatArray, width: FloatArray, heads: FloatArray) -> FloatArra
 
 def _through_blocks(frame: Frame, assembly: Assembly, found: shapes.Thrusts) -> FloatArray:
     """Lines (p, 3, 2) from where the forces of one block meet through each centre of pressure to those of the other."""
-    meet, point = shapes.junctions(assembly, found), found.point
+    meet, point = _junctions(assembly, found), found.point
     first, second = (
         np.where(assembly.fixed[block][:, None], point, meet[block])
         for block in (assembly.block_a[found.interface], assembly.block_b[found.interface])
@@ -182,3 +183,19 @@ def _bar_forces(frame: Frame, assembly: Assembly, forces: Sequence[BarForce]) ->
         at, size = (x + beside * frame.block, y - above * frame.block), min(110.0, 0.17 * frame.block)
         drawn.append(Text("said", at, numbers.given(bar.tension, 3), size, anchor))
     return drawn
+
+
+def _junctions(assembly: Assembly, found: Thrusts) -> FloatArray:
+    """Points (n, 2) where the thrust lines of a block meet: its centroid, or on the straight line between two forces.
+
+    A block with exactly two contact forces passes the thrust straight from one centre of pressure to the other.
+    """
+    places = assembly.centroid.copy()
+    touching: list[list[int]] = [[] for _ in range(assembly.n_blocks)]
+    for k, p in enumerate(found.interface):
+        touching[assembly.block_a[p]].append(k)
+        touching[assembly.block_b[p]].append(k)
+    for block, forces in enumerate(touching):
+        if len(forces) == 2:
+            places[block] = found.point[forces].mean(axis=0)
+    return places

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.case import Case
 from harness.model.result import Result, relative_velocities
 from reports.drawing.display_list import Circles, DisplayList, Frame, Group, Lines, Polygons, Shape, chosen
@@ -135,7 +135,7 @@ def _joints_of_one(
         slides = mine.rubs & ~other.rubs
         opens = mine.opens & ~other.opens & ~slides
         for role, width, members in (("slide", size, slides), ("open", 0.6 * size, opens)):
-            ends = shapes.moved_ends(assembly, mechanism, scales[number], np.flatnonzero(members))
+            ends = _moved_ends(assembly, mechanism, scales[number], np.flatnonzero(members))
             drawn.append(Lines(role, tuple(frame.place(ends)), width, 0.9 * size if number else None))
     return drawn
 
@@ -147,7 +147,7 @@ def _cracks(frame: Frame, assembly: Assembly, result: Result, scale: float) -> l
     if not len(opened) or assembly.n_interfaces > DRAWN_INTERFACES:
         return []
     mechanism = np.asarray(result.mechanism, dtype=float)
-    outlines = frame.place(shapes.separated_faces(assembly, mechanism, scale, opened))
+    outlines = frame.place(_separated_faces(assembly, mechanism, scale, opened))
     ends = frame.place(np.stack([assembly.end1[opened], assembly.end2[opened]], axis=1))
     return [Polygons("crack", tuple(outlines), tuple(ends))]
 
@@ -179,3 +179,20 @@ def _marks(
         values = (state, *opening[p].tolist(), float(slip[p]))
         drawn.append(Group(tuple(parts), motions[a] if moves[a] else None, joint=p, values=values))
     return drawn
+
+
+def _moved_ends(
+    assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray, blocks: IntArray | None = None
+) -> FloatArray:
+    """Both contact points (p, 2, 2) of some interfaces, moved with the blocks (m,) given, their block a by default."""
+    points = np.stack([assembly.end1[chosen], assembly.end2[chosen]], axis=1)
+    block = (assembly.block_a if blocks is None else blocks)[chosen]
+    arm = points - assembly.centroid[block][:, None]
+    turned = mechanism[block, 2][:, None, None] * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
+    return np.asarray(points + scale * (mechanism[block, :2][:, None] + turned))
+
+
+def _separated_faces(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray) -> FloatArray:
+    """Outlines (p, 4, 2) between the faces of some interfaces: both contact points with block a, back with block b."""
+    faces = [_moved_ends(assembly, mechanism, scale, chosen, side) for side in (assembly.block_a, assembly.block_b)]
+    return np.concatenate([faces[0], faces[1][:, ::-1]], axis=1)

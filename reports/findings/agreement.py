@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +12,6 @@ from harness.model.method import Status
 from harness.model.ranges import Range, differences, range_of
 from harness.model.result import Result, normalised_mechanism, relative_velocities
 from reports.geometry import shapes
-from reports.labels import labels
 from reports.memo import memo
 
 _SAME_JOINT, _SAME_MEASURED = 1e-3, 0.05
@@ -161,19 +159,3 @@ def agreement(assembly: Assembly, first: Result, second: Result, measure: FloatA
         only_second,
         within,
     )
-
-
-def agreements(item: CaseResults) -> list[Agreement]:
-    """All pairs of the families' main methods and the associated maximum that found a collapse."""
-    usable = [
-        result
-        for result in labels.in_order(item)
-        if result.status is Status.OK
-        and result.finding.has_multiplier
-        and (result.is_main or result is item.associated)
-    ]
-    if len(usable) < 2:
-        return []
-    assembly = item.case.assembly
-    measure = measure_of(assembly)
-    return [agreement(assembly, first, second, measure) for first, second in itertools.combinations(usable, 2)]

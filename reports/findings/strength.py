@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from harness.model.assembly import Assembly, BoolArray, FloatArray
@@ -12,28 +10,6 @@ from harness.model.envelope import safe_size
 from harness.model.method import Status
 from harness.model.result import Result, plastic_and_residual_of, size_of
 from reports.labels import numbers
-from reports.labels.wall_summary import value_in_words
-
-
-@dataclass(frozen=True)
-class StrengthRow:
-    """What one method finds for a wall with the strength of its joints, plastic, and without, the residual value."""
-
-    method: str
-    plastic: str
-    residual: str
-
-
-def strength_rows(item: CaseResults) -> list[StrengthRow]:
-    """One row a method that took the strength of the joints; none where all joints are dry."""
-    rows = []
-    for result in item.results:
-        pair = plastic_and_residual_of(result)
-        if pair is None or result.status is not Status.OK:
-            continue
-        plastic, residual = (value_in_words(each) if each.status is Status.OK else numbers.NOTHING for each in pair)
-        rows.append(StrengthRow(result.method, plastic, residual))
-    return rows
 
 
 def least_residual(item: CaseResults) -> tuple[float, Result] | None:

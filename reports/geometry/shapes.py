@@ -95,22 +95,6 @@ def thrusts(assembly: Assembly, forces: FloatArray, smallest: float = 1e-9) -> T
     return Thrusts(kept, point, vector[kept], size[kept])
 
 
-def junctions(assembly: Assembly, found: Thrusts) -> FloatArray:
-    """Points (n, 2) where the thrust lines of a block meet: its centroid, or on the straight line between two forces.
-
-    A block with exactly two contact forces passes the thrust straight from one centre of pressure to the other.
-    """
-    places = assembly.centroid.copy()
-    touching: list[list[int]] = [[] for _ in range(assembly.n_blocks)]
-    for k, p in enumerate(found.interface):
-        touching[assembly.block_a[p]].append(k)
-        touching[assembly.block_b[p]].append(k)
-    for block, forces in enumerate(touching):
-        if len(forces) == 2:
-            places[block] = found.point[forces].mean(axis=0)
-    return places
-
-
 def amplitude(assembly: Assembly, mechanism: FloatArray) -> float:
     """Displacement of the fastest vertex that shows a normalised mechanism well [length].
 
@@ -127,23 +111,6 @@ def displaced(assembly: Assembly, mechanism: FloatArray, scale: float) -> list[F
     motion = np.asarray(mechanism, dtype=float)[block]
     moved = points + scale * vertex_velocities(points, assembly.centroid[block], motion)
     return np.split(moved, np.cumsum([len(polygon) for polygon in assembly.polygons])[:-1])
-
-
-def moved_ends(
-    assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray, blocks: IntArray | None = None
-) -> FloatArray:
-    """Both contact points (p, 2, 2) of some interfaces, moved with the blocks (m,) given, their block a by default."""
-    points = np.stack([assembly.end1[chosen], assembly.end2[chosen]], axis=1)
-    block = (assembly.block_a if blocks is None else blocks)[chosen]
-    arm = points - assembly.centroid[block][:, None]
-    turned = mechanism[block, 2][:, None, None] * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
-    return np.asarray(points + scale * (mechanism[block, :2][:, None] + turned))
-
-
-def separated_faces(assembly: Assembly, mechanism: FloatArray, scale: float, chosen: IntArray) -> FloatArray:
-    """Outlines (p, 4, 2) between the faces of some interfaces: both contact points with block a, back with block b."""
-    faces = [moved_ends(assembly, mechanism, scale, chosen, side) for side in (assembly.block_a, assembly.block_b)]
-    return np.concatenate([faces[0], faces[1][:, ::-1]], axis=1)
 
 
 def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) -> np.ndarray:

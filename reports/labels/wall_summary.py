@@ -10,7 +10,7 @@ from harness.model.interfaces import limits_of
 from harness.model.live_load import direction_in_words
 from harness.model.method import Finding
 from harness.model.result import Result
-from harness.model.result_texts import bound_in_words, strength_in_words
+from harness.model.result_texts import bound_in_words
 from harness.model.wall import Detection
 from reports.geometry import shapes
 from reports.labels import labels, numbers
@@ -28,11 +28,6 @@ def given_in_words(case: Case) -> str:
     """Friction and live load of a wall, for the head of a drawing."""
     way = direction_in_words(case)
     return f"tan φ = {friction_text(case.assembly)}, {f'live load {way}' if way else 'no live load'}"
-
-
-def drawn_in_words(result: Result, what: str) -> str:
-    """The method, its value, what of the strength of joints is counted in it, and what is drawn."""
-    return f"{result.method}, {value_in_words(result)}{strength_in_words(result)}: {what}"
 
 
 def wall_summary(case: Case) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import itertools
 import json
 from collections.abc import Sequence
 from datetime import datetime
@@ -15,8 +16,9 @@ from markupsafe import Markup
 
 from harness.model.case import Case
 from harness.model.columns import COMPARED, LISTED, REPEATED, ResultColumn
-from harness.model.comparison import ComparisonRun
+from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.envelope import by_wall, envelopes, ranked_text
+from harness.model.method import Status
 from harness.model.result_texts import settings_text
 from harness.model.units import DIMENSIONLESS
 from harness.model.writing import write_whole
@@ -29,7 +31,7 @@ from reports.drawing.looks import HATCH, css
 from reports.drawing.svg import inline
 from reports.drawing.wall_drawing import wall_drawing
 from reports.environment import environment
-from reports.findings import agreement
+from reports.findings.agreement import Agreement, agreement, measure_of
 from reports.findings.limits import known_limits
 from reports.geometry import shapes
 from reports.labels import labels, numbers
@@ -177,7 +179,7 @@ def _sections(
         if shapes.problem(item.case):
             sections.append(case_section(number, item, rows[number], [], [], Markup(""), drawings))
             continue
-        pairs, wall = agreement.agreements(item), inline(wall_drawing(item.case))
+        pairs, wall = _agreements(item), inline(wall_drawing(item.case))
         sections.append(case_section(number, item, rows[number], pairs, curves(item), wall, drawings, fields[number]))
     return sections
 
@@ -247,3 +249,19 @@ def _provenance(run: ComparisonRun) -> list[tuple[str, str]]:
         else:
             flat.append((name.replace("_", " "), str(value)))
     return flat
+
+
+def _agreements(item: CaseResults) -> list[Agreement]:
+    """All pairs of the families' main methods and the associated maximum that found a collapse."""
+    usable = [
+        result
+        for result in labels.in_order(item)
+        if result.status is Status.OK
+        and result.finding.has_multiplier
+        and (result.is_main or result is item.associated)
+    ]
+    if len(usable) < 2:
+        return []
+    assembly = item.case.assembly
+    measure = measure_of(assembly)
+    return [agreement(assembly, first, second, measure) for first, second in itertools.combinations(usable, 2)]

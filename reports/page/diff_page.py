@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files
-from pathlib import Path
 
 from markupsafe import Markup
 
 from harness.model.difference import DIFFERENCE, Difference, DifferenceColumn, Row
-from harness.model.writing import write_whole
 from reports.environment import environment
 from reports.labels import numbers
 from reports.page.tables import Cell
@@ -42,11 +40,6 @@ _DIFF_TEXTS: dict[str, Callable[[Row], str]] = {
     "ratio": lambda row: numbers.NOTHING if row.ratio is None else f"{row.ratio:.2f}",
 }
 """Texts of columns that are not that of the value alone, by the name of the column."""
-
-
-def write_diff(found: Difference, path: Path) -> None:
-    """Write the page of a comparison of two sets as one HTML file that works offline."""
-    write_whole(path, render(found))
 
 
 def render(found: Difference) -> str:

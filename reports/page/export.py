@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 import tempfile
@@ -21,6 +22,7 @@ from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import Row, TableColumn, in_units, types, units, values
 from harness.model.writing import csv_text, write_whole
 from reports.charts import charts
+from reports.charts.charts import Chart
 from reports.charts.curves import curves
 from reports.charts.studies import studies
 from reports.geometry import shapes
@@ -104,7 +106,7 @@ def _charts(run: ComparisonRun) -> dict[str, bytes]:
     contents: dict[str, bytes] = {}
     for name, drawing in drawings:
         if isinstance(drawing, charts.DrawnChart) and drawing.chart is not None:
-            contents[f"charts/{name}.csv"] = charts.csv_of(drawing.chart).encode()
+            contents[f"charts/{name}.csv"] = _csv_of(drawing.chart).encode()
             contents[f"charts/{name}.svg"] = vectors.alone(str(drawing)).encode()
     return contents
 
@@ -203,3 +205,14 @@ def _frame(columns: Sequence[TableColumn[Row]], rows: Iterable[Row]) -> pd.DataF
     table = pd.DataFrame(listed, columns=list(types(columns)), dtype=object).astype(types(columns))
     table.attrs["units"] = units(columns)
     return table
+
+
+def _csv_of(chart: Chart) -> str:
+    """The data of a chart: one row a point, with the ends of its bar where it has one."""
+    fitted = ("fitted",) if any(series.curve for series in chart.series) else ()
+    rows: list[tuple[object, ...]] = []
+    for series in chart.series:
+        columns = (series.x, series.y, series.low, series.high, *((series.curve,) if fitted else ()))
+        rows += [(series.name, *values) for values in itertools.zip_longest(*columns)]
+    rows += [(name, None, value, None, None) for name, value in chart.levels]
+    return csv_text(("series", chart.x_label, chart.y_label, "low", "high", *fitted), rows)

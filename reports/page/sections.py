@@ -12,17 +12,18 @@ from harness.model.bar_forces import bar_forces_of
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
 from harness.model.details import AnswerDetails
-from harness.model.result import Result
+from harness.model.method import Status
+from harness.model.result import Result, plastic_and_residual_of
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.svg import inline
 from reports.findings.agreement import Agreement
 from reports.findings.joints import joints_in_words, motion, open_with_force
 from reports.findings.reasons import reasons
-from reports.findings.strength import StrengthRow, strength_rows, strength_text
+from reports.findings.strength import strength_text
 from reports.geometry import shapes, thrust_lines
 from reports.labels import numbers
-from reports.labels.wall_summary import wall_summary
+from reports.labels.wall_summary import value_in_words, wall_summary
 from reports.page.page_drawings import PageDrawings
 from reports.page.summary import figure_of, is_calm, wall_findings
 from reports.page.tables import RunRow
@@ -77,7 +78,7 @@ class CaseSection:
     calm: bool = False
     overlay: Markup = field(default_factory=Markup)
     overlay_caption: str = ""
-    strength: list[StrengthRow] = field(default_factory=list)
+    strength: list[_StrengthRow] = field(default_factory=list)
     bars: list[_BarRow] = field(default_factory=list)
 
     @property
@@ -166,7 +167,7 @@ def case_section(
         loads_drawn=_loads_drawn(item.case),
         through=_through(item),
         facts=_facts(item.case),
-        strength=strength_rows(item),
+        strength=_strength_rows(item),
         bars=_bar_rows(item),
         warnings=(*item.case.warnings, *item.refusals, *filter(None, [item.split_on_dead_load])),
         rows=rows,
@@ -292,3 +293,24 @@ def _bars_text(case: Case) -> str:
             limit = most if min(forces) == max(forces) else f"up to {most}"
             said.append(f"{numbers.count(len(forces), noun)}, yield force {limit}")
     return "; ".join(said)
+
+
+@dataclass(frozen=True)
+class _StrengthRow:
+    """What one method finds for a wall with the strength of its joints, plastic, and without, the residual value."""
+
+    method: str
+    plastic: str
+    residual: str
+
+
+def _strength_rows(item: CaseResults) -> list[_StrengthRow]:
+    """One row a method that took the strength of the joints; none where all joints are dry."""
+    rows = []
+    for result in item.results:
+        pair = plastic_and_residual_of(result)
+        if pair is None or result.status is not Status.OK:
+            continue
+        plastic, residual = (value_in_words(each) if each.status is Status.OK else numbers.NOTHING for each in pair)
+        rows.append(_StrengthRow(result.method, plastic, residual))
+    return rows

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
 from markupsafe import Markup
 
 from harness.model.ranges import percent_text
-from harness.model.writing import write_whole
 from reports.charts import charts
 from reports.charts.grid import legend, shade
 from reports.charts.study_findings import answer, findings
@@ -101,11 +99,6 @@ class _AgreementMap:
     rows: list[tuple[str, list[tuple[str, str] | None]]]
     legend: Markup
     left: str
-
-
-def write_page(page: StudyPage, path: Path) -> None:
-    """Write the page of a study as one HTML file that works offline."""
-    write_whole(path, render(page))
 
 
 def render(page: StudyPage) -> str:

@@ -9,13 +9,15 @@ from importlib.resources import files
 
 from harness.model.case import Case
 from harness.model.comparison import CaseResults
+from harness.model.result import Result
+from harness.model.result_texts import strength_in_words
 from reports.drawing.display_list import DisplayList, Text
 from reports.drawing.force_drawing import force_drawing
 from reports.drawing.mechanism_drawing import mechanism_drawing
 from reports.drawing.svg import standalone
 from reports.drawing.wall_drawing import wall_drawing
 from reports.geometry import shapes
-from reports.labels.wall_summary import drawn_in_words, given_in_words
+from reports.labels.wall_summary import given_in_words, value_in_words
 from reports.page.summary import figure_of
 
 LETTERS = 120
@@ -36,11 +38,11 @@ def drawings(item: CaseResults) -> dict[str, str]:
     for result in item.results:
         if _fits(result.mechanism, case.assembly.n_blocks):
             found[f"{result.method}-mechanism"] = headed(
-                case, mechanism_drawing(case, result), drawn_in_words(result, "mechanism")
+                case, mechanism_drawing(case, result), _drawn_in_words(result, "mechanism")
             )
         if _fits(result.forces, case.assembly.n_interfaces):
             found[f"{result.method}-forces"] = headed(
-                case, force_drawing(case, result), drawn_in_words(result, "contact forces")
+                case, force_drawing(case, result), _drawn_in_words(result, "contact forces")
             )
     overlay, caption = figure_of(item)
     if overlay is not None:
@@ -96,3 +98,8 @@ def _chart_style() -> str:
     known = dict(re.findall(r"--([a-z]+): ([^;]+);", css[: css.index("}")]))
     part = css[css.index("/* Charts */") : css.index("footer {")]
     return re.sub(r"var\(--([a-z]+)\)", lambda found: known[found.group(1)], part).strip()
+
+
+def _drawn_in_words(result: Result, what: str) -> str:
+    """The method, its value, what of the strength of joints is counted in it, and what is drawn."""
+    return f"{result.method}, {value_in_words(result)}{strength_in_words(result)}: {what}"

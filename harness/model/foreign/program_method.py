@@ -25,7 +25,7 @@ from harness.model.errors import InputError, visible
 from harness.model.foreign.conversation import conversation_with
 from harness.model.foreign.description import About, Description, settings_class
 from harness.model.foreign.explicit import explicit_document, write_arrays
-from harness.model.foreign.register import Program, program_named
+from harness.model.foreign.register import Program
 from harness.model.foreign.result_document import answer_of
 from harness.model.foreign.spawning import output_of, whole_address_space
 from harness.model.json_text import json_of, read_json, text_of
@@ -202,16 +202,6 @@ def description_of(program: Program) -> Description:
 def method_of(program: Program) -> ProgramMethod:
     """The method of a program, made once in a process."""
     return ProgramMethod(program)
-
-
-def method_named(name: str) -> ProgramMethod | None:
-    """The method of the program of this name in the file of methods; None where there is none.
-
-    Raises:
-        InputError: as of `ProgramMethod`.
-    """
-    program = program_named(name)
-    return None if program is None else method_of(program)
 
 
 @contextmanager

@@ -11,7 +11,7 @@ Source: E. Todorov, Convex and analytically-invertible dynamics with contacts an
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,9 @@ import numpy as np
 from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.errors import optional
 from methods.de.engines.engine import motion_units
-from methods.de.engines.mass_scaling import MassScaling, courses, is_chain, lighter_upwards, masses, number_of_courses
+from methods.de.engines.mass_scaling import MassScaling, courses, masses, number_of_courses
 from methods.de.engines.pymunk_joints import polygon_gyration
 from methods.de.engines.strips import StripShape, require_lengths
-from methods.de.settings import MujocoSettings
 
 _TOLERANCE = 1e-14
 """Of the contact solver."""
@@ -89,19 +88,6 @@ def load_mujoco() -> Any:
         InputError: it is not installed.
     """
     return optional("mujoco", "mujoco", "method de-mujoco")
-
-
-def mujoco_tunings(
-    assembly: Assembly, settings: MujocoSettings, options: MujocoTuning = MujocoTuning()
-) -> list[tuple[MassScaling, float]]:
-    """Tunings with their impedances, in the order in which they are tried: light tops first."""
-    course, contacts = courses(assembly), options.contacts
-    tuning = lighter_upwards(course)
-    usual = contacts.chain_impedance if is_chain(course) else contacts.wall_impedance
-    impedance = settings.impedance or usual
-    if settings.mass_decay is not None:
-        return [(replace(tuning, mass_decay=settings.mass_decay), impedance)]
-    return [(tuning, impedance), (options.uniform, settings.impedance or contacts.wall_impedance)]
 
 
 class MujocoWall:

@@ -11,12 +11,13 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from harness.model.assembly import Assembly, FloatArray
 from harness.model.deadline import STOPPED, OutOfTime, best_so_far
 from harness.model.method import Answer, Finding, Status, processes_allowed
 from methods.de.holds.order_bracket import BracketSearch, OrderBracket
 from methods.numerics.forks import in_forks
-from methods.numerics.statics import out_of_balance
 
 SEARCH_STOPPED = f"the search was {STOPPED}"
 _BRACKET_MEANING = (
@@ -117,7 +118,7 @@ def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: 
         search.engine.restore(dict(search.states)[multiplier])
         search.engine.load(multiplier)
         forces = search.engine.contact_forces()
-        left = out_of_balance(assembly, forces, assembly.dead + multiplier * assembly.live)
+        left = _out_of_balance(assembly, forces, assembly.dead + multiplier * assembly.live)
         if float(left.max(initial=0.0)) <= tolerance:
             return RestState(search, multiplier, forces)
     return None
@@ -226,3 +227,23 @@ def _findings(search: BracketSearch, ask_multiplier: bool) -> _Findings:
 
     stopped = best_so_far(to_its_end, lambda: True)
     return _Findings(search.found, search.states, search.engine.steps, stopped)
+
+
+def _out_of_balance(assembly: Assembly, forces: FloatArray, load: FloatArray) -> FloatArray:
+    """(n_free,) largest force or moment left over on each free block, as a share of all that acts on it.
+
+    Moments count divided by the radius of the block. A block on which nothing acts is in balance.
+
+    Args:
+        assembly: the wall.
+        forces: (m, 3) contact forces (n1, n2, s) [force].
+        load: (n, 3) loads on the blocks [force, force, moment].
+    """
+    left = (assembly.kinematic_matrix.T @ forces.ravel() + load[assembly.free].ravel()).reshape(-1, 3)
+    left[:, 2] /= assembly.radius[assembly.free]
+    acting = np.hypot(load[:, 0], load[:, 1]) + abs(load[:, 2]) / assembly.radius
+    for side in (assembly.block_a, assembly.block_b):
+        np.add.at(acting, side, abs(forces).sum(axis=1))
+    own = acting[assembly.free]
+    share: FloatArray = abs(left).max(axis=1) / np.where(own > 0.0, own, 1.0)
+    return share

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.model.assembly import FloatArray
 from methods.de.engines.engine import Engine
-from methods.de.holds.load_step import LoadStep, State, hold, least_motion, settle
+from methods.de.holds.load_step import LoadStep, State, hold, least_motion
 from methods.de.holds.motion import MotionProof, StaticLimit
 from methods.de.settings import HoldSettings
 
@@ -237,30 +237,3 @@ class BracketSearch:
                 return
             step *= _GROWTH
             multiplier += step
-
-
-def held_forces(engine: Engine, settings: HoldSettings, found: OrderBracket) -> tuple[FloatArray, float]:
-    """Contact forces (m, 3) at the highest held state, followed until it no longer settles, and its residual."""
-    assert found.held is not None
-    assert found.state is not None
-    engine.restore(found.state)
-    engine.load(found.held)
-    engine.advance(2 * max(10, round(engine.relaxation / 3.0)))
-    residual = settle(engine, settings)
-    return engine.contact_forces(), residual
-
-
-def mechanism_at(
-    engine: Engine, settings: HoldSettings, statics: StaticLimit, found: OrderBracket, excess: float = 1.02
-) -> tuple[FloatArray, FloatArray]:
-    """Velocity field (n, 3) from the highest held state and the contact forces (m, 3) that were measured with it.
-
-    It is that at `excess` times the middle of the bracket, or where it moves if nothing is held.
-    """
-    assert found.middle is not None
-    assert found.moving is not None
-    assert found.state is not None
-    engine.restore(found.state)
-    engine.load(found.moving if found.nothing else excess * found.middle)
-    velocity = hold(engine, settings, statics).velocity
-    return velocity, engine.contact_forces()

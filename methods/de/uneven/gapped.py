@@ -17,7 +17,6 @@ from harness.model.displaced import DisplacedState
 from methods.de.engines.edges import FacingEdges
 from methods.de.engines.engine import motion_units
 from methods.de.engines.pymunk_blocks import BodyTuning
-from methods.de.holds.loading import raise_until_it_falls, shown_to_fall
 from methods.de.holds.motion import by_travel
 from methods.springs.model.factor import make_factor
 from methods.springs.model.points import GapSettings
@@ -159,22 +158,6 @@ class GappedWall:
         )
         opening = (openings + self._shift).ravel() / model.displacement
         return replace(model, initial_opening=opening, history=shear)
-
-
-def load_gapped(wall: GappedWall, greatest: float, step: float, accuracy: float) -> tuple[float, float | None] | None:
-    """The highest multiplier at which the wall came to rest and the lowest at which it is shown to move, if any.
-
-    Args:
-        wall: the wall, which stays at its last rest.
-        greatest, step, accuracy: as in `raise_until_it_falls`.
-
-    Returns:
-        None where it does not come to rest under its dead load.
-    """
-    if not wall.rests(0.0):
-        return None
-    ends = raise_until_it_falls(wall.rests, greatest, step, accuracy)
-    return shown_to_fall(wall.rests, wall.moved, ends, greatest, accuracy)
 
 
 def _at_rest(model: WallModel, multiplier: float, steps: int) -> Equilibrium:

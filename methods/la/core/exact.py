@@ -13,7 +13,7 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.core.flexibility import Compliance
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.numerics.failures import NoMechanism, SingularMatrix
+from methods.numerics.failures import NumericalFailure, SingularMatrix
 
 RIGID = 1e40
 """Weight of a slack that may not change."""
@@ -107,7 +107,7 @@ def exact_mechanism(
 
     Raises:
         SingularMatrix: the kinematic matrix is singular to rounding.
-        NoMechanism: no mechanism with live work moves in these contacts only.
+        NumericalFailure: no mechanism with live work moves in these contacts only.
     """
     still = np.column_stack([~moving[:, 0], ~moving[:, 1], ~(moving[:, 2] | moving[:, 3])]).astype(float)
     transform = np.tile(np.eye(3), (problem.n_interfaces, 1, 1))
@@ -129,5 +129,5 @@ def exact_mechanism(
         raise SingularMatrix("the kinematic matrix is singular to rounding")
     work = float(problem.live @ velocities)
     if work <= 1e-6 * problem.live_work:
-        raise NoMechanism("no mechanism with live work moves in these contacts only")
+        raise NumericalFailure("no mechanism with live work moves in these contacts only")
     return velocities * (problem.live_work / work)
