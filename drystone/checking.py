@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from drystone.certificates import certificate_line, certificate_runs
 from drystone.walls import Wall, checked_walls, library_wall, library_walls
-from harness.engine import pipeline, regression
+from harness.engine import pipeline
 from harness.engine.plan import check_methods
 from harness.engine.run import Limits, Run
 from harness.engine.store import Store
 from harness.model.case import Case
+from harness.model.result import Result
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,9 +106,9 @@ def held(
 ) -> Check:
     """What the runs of a plan find, or the store has of them, beside what is known; arguments as of `check`."""
     results = pipeline.execute(plan.runs, store, jobs, fresh=fresh, progress=progress)
-    lines = regression.lines(plan.gated, results[: len(plan.gated)])
+    gated = _lines(plan.gated, results[: len(plan.gated)])
     rest = zip(plan.certified, results[len(plan.gated) :], strict=True)
-    return Check(lines + [certificate_line(run, result) for run, result in rest])
+    return Check(gated + [certificate_line(run, result) for run, result in rest])
 
 
 def planned(cases: Sequence[Case], tier: Tier) -> Plan:
@@ -134,3 +135,29 @@ def _gated_runs(case: Case, limits: Limits, tier: str) -> list[Run]:
             references = (*earlier.references, item) if earlier else (item,)
             needed[place] = Run(case, method, dict(item.settings), limits, references)
     return list(needed.values())
+
+
+def _lines(runs: Sequence[Run], results: Sequence[Result]) -> list[dict[str, Any]]:
+    """One row a checked reference: case, quantity, method, value, reference, tolerance, source, verdict, sentence."""
+    rows = []
+    for run, result in zip(runs, results, strict=True):
+        for reference, comparison in zip(run.references, result.comparisons, strict=True):
+            rows.append(
+                {
+                    "case": run.case.id,
+                    "reference": reference.id,
+                    "quantity": reference.quantity,
+                    "method": run.method,
+                    "settings": run.settings,
+                    "value": comparison.value,
+                    "relation": reference.relation,
+                    "expected": comparison.expected,
+                    "tolerance": reference.tolerance,
+                    "type": str(reference.type),
+                    "source": reference.source,
+                    "requirement": reference.requirement,
+                    "verdict": str(comparison.verdict),
+                    "sentence": comparison.sentence,
+                }
+            )
+    return rows

@@ -49,8 +49,7 @@ from typing import Any
 import numpy as np
 
 from harness.engine.bar_checks import tensions_beyond
-from harness.engine.brittle_checks import listed, motion_of_whole
-from harness.engine.judge_breaking import judge_breaking
+from harness.engine.brittle_checks import judge_breaking, listed, motion_of_whole
 from harness.engine.judge_dead_load import judge_fall, judge_limit
 from harness.engine.judge_decision import NO_FORCES, apart, beyond_prestress, countable, decide, said_of
 from harness.engine.live_work import brings_down

@@ -140,7 +140,7 @@ def _sources_version(*packages: str, others: Sequence[str] = ()) -> str:
 JUDGE = tuple(
     f"harness.engine.{name}"
     for name in (
-        *("judge", "judge_breaking", "judge_dead_load", "judge_decision", "judge_law"),
+        *("judge", "judge_dead_load", "judge_decision", "judge_law"),
         *("bar_checks", "brittle_checks", "crushing", "live_work", "measured_motion", "measures", "residuals"),
         *("motion_judge", "reaction_judge", "settled_judge"),
     )

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
-from harness.engine.run import Run
 from harness.model.comparison import ComparisonRun
 from harness.model.method import Status
-from harness.model.result import Result, Verdict
+from harness.model.result import Verdict
 
 
 def violations(compared: ComparisonRun) -> list[str]:
@@ -30,29 +26,3 @@ def violations(compared: ComparisonRun) -> list[str]:
             if gate.passed is False:
                 found.append(f"{case.case.id}: {gate.name}: {gate.statement}, but {gate.sentence}")
     return found
-
-
-def lines(runs: Sequence[Run], results: Sequence[Result]) -> list[dict[str, Any]]:
-    """One row a checked reference: case, quantity, method, value, reference, tolerance, source, verdict, sentence."""
-    rows = []
-    for run, result in zip(runs, results, strict=True):
-        for reference, comparison in zip(run.references, result.comparisons, strict=True):
-            rows.append(
-                {
-                    "case": run.case.id,
-                    "reference": reference.id,
-                    "quantity": reference.quantity,
-                    "method": run.method,
-                    "settings": run.settings,
-                    "value": comparison.value,
-                    "relation": reference.relation,
-                    "expected": comparison.expected,
-                    "tolerance": reference.tolerance,
-                    "type": str(reference.type),
-                    "source": reference.source,
-                    "requirement": reference.requirement,
-                    "verdict": str(comparison.verdict),
-                    "sentence": comparison.sentence,
-                }
-            )
-    return rows

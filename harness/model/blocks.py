@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import shapely
+from shapely.validation import explain_validity
 
 from harness.model import geometry
 from harness.model.assembly import BoolArray, FloatArray, polygon_area
@@ -14,7 +16,7 @@ from harness.model.input_checks import thickness_of
 from harness.model.names import faults_of_wall
 from harness.model.pattern import blocks_of, count_of
 from harness.model.pattern_fields import PatternBase
-from harness.model.rings import hole_faults, ringed
+from harness.model.rings import ringed
 from harness.model.wall import Block, Wall
 
 
@@ -61,7 +63,7 @@ def polygons_of(blocks: Sequence[Block]) -> list[FloatArray]:
     holes = {k: [np.array(hole, dtype=float) for hole in block.holes] for k, block in enumerate(blocks) if block.holes}
     elements = [f'block "{block.id}"' for block in blocks]
     raise_faults(geometry.polygon_faults(polygons, elements))
-    raise_faults([fault for k, within in holes.items() for fault in hole_faults(polygons[k], within, elements[k])])
+    raise_faults([fault for k, within in holes.items() for fault in _hole_faults(polygons[k], within, elements[k])])
     return [
         ringed(polygon, holes[k]) if k in holes else geometry.counter_clockwise(polygon)
         for k, polygon in enumerate(polygons)
@@ -97,3 +99,19 @@ def weight_of(block: Block, wall: Wall) -> float:
     area -= sum(polygon_area(np.array(hole, dtype=float)) for hole in block.holes)
     per_area = float(unit_weight) * area * thickness_of(block, wall)
     return per_area if wall.units.unit_weight is None else per_area * wall.units.unit_weight_factor
+
+
+def _hole_faults(outer: FloatArray, holes: Sequence[FloatArray], element: str) -> list[InputError]:
+    """What is wrong with the holes (i, 2) of a block whose outline (j, 2) is a polygon."""
+    stone = shapely.Polygon(outer)
+    faults = []
+    for number, hole in enumerate(holes):
+        cut = shapely.Polygon(hole)
+        if not cut.is_valid or cut.area <= 1e-12 * stone.area or not stone.covers(cut):
+            remedy = "Give the vertices in order round a hole inside its outline"
+            faults.append(InputError(f"holes[{number}] is no polygon within it", remedy, element))
+    whole = shapely.Polygon(outer, holes)
+    if not faults and not whole.is_valid:
+        why = f"its holes touch each other or its outline along a length ({explain_validity(whole)})"
+        faults.append(InputError(why, "Give them as one, or apart", element))
+    return faults

@@ -19,7 +19,7 @@ from harness.model.interfaces import Faces, Joints, faults_of_given, floating, f
 from harness.model.wall import Block, Detection, Interface, Wall
 
 
-class NamesBlocks(Protocol):
+class _NamesBlocks(Protocol):
     """Whatever acts on blocks by their names or by a group: a body force, a pressure, a fill, a settlement."""
 
     @property
@@ -64,7 +64,7 @@ class Laid:
                 groups.setdefault(group, []).append(k)
         return {group: np.array(members) for group, members in groups.items()}
 
-    def named(self, given: NamesBlocks) -> IntArray | None:
+    def named(self, given: _NamesBlocks) -> IntArray | None:
         """Numbers of the blocks that a load or a settlement names, by themselves or by a group; None: it names none."""
         if given.blocks is None and given.group is None:
             return None

@@ -29,7 +29,7 @@ _MOST_BUILT = 200_000
 
 
 @dataclass(frozen=True)
-class NamedLoads:
+class _NamedLoads:
     """A load case of a wall.
 
     Attributes:
@@ -45,7 +45,7 @@ class NamedLoads:
     stands: str = ""
 
 
-def named_loads(wall: Wall) -> dict[str, NamedLoads]:
+def named_loads(wall: Wall) -> dict[str, _NamedLoads]:
     """All load cases of a wall by name: those written out, one for each place of loads that travel, combinations.
 
     A combination of a load that travels is one of its load cases for each place.
@@ -54,7 +54,7 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
         InputError: a load travels over no face, a combination names what there is not, or cannot be added up, or the
             load cases are too many.
     """
-    found = {name: NamedLoads(own, f"load_cases.{name}") for name, own in wall.load_cases.items()}
+    found = {name: _NamedLoads(own, f"load_cases.{name}") for name, own in wall.load_cases.items()}
     members = {name: [name] for name in found}
     if wall.travelling:
         blocks = blocks_of_wall(wall)
@@ -64,7 +64,7 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
         loads = upward.loads(travelling, place, MOST_LOAD_CASES - len(found))
         members[name] = [f"{name}-{number}" for number in range(1, len(loads) + 1)]
         for each, own in zip(members[name], loads, strict=True):
-            _add(found, each, NamedLoads(own, place, stands=f"{name} {_stands(own, wall)}"))
+            _add(found, each, _NamedLoads(own, place, stands=f"{name} {_stands(own, wall)}"))
     alone, added = dict(found), 0
     for name, factors in wall.combinations.items():
         for suffix, chosen in _chosen(name, factors, members, alone, MOST_LOAD_CASES - len(found)):
@@ -80,7 +80,7 @@ def named_loads(wall: Wall) -> dict[str, NamedLoads]:
     return found
 
 
-def named_loads_of(case: Case) -> dict[str, NamedLoads]:
+def named_loads_of(case: Case) -> dict[str, _NamedLoads]:
     """All load cases of the wall of a case by name, as `named_loads`.
 
     Raises:
@@ -107,7 +107,7 @@ def loads_in(loads: Loads) -> int:
     )
 
 
-def _add(found: dict[str, NamedLoads], name: str, loads: NamedLoads) -> None:
+def _add(found: dict[str, _NamedLoads], name: str, loads: _NamedLoads) -> None:
     """Another load case, whose name no other has."""
     if name in found:
         problem = f'its load case "{name}" has the name of another'
@@ -149,8 +149,8 @@ def _chosen(
 
 
 def _combined(
-    name: str, cases: dict[str, NamedLoads], chosen: dict[str, float], factors: dict[str, float]
-) -> NamedLoads:
+    name: str, cases: dict[str, _NamedLoads], chosen: dict[str, float], factors: dict[str, float]
+) -> _NamedLoads:
     """The sum of load cases with factors."""
     place = f"combinations.{name}"
     for each, case in cases.items():
@@ -160,10 +160,10 @@ def _combined(
     live = [times(case.own.live, chosen[each]) for each, case in cases.items() if case.own.live is not None]
     dead = together(*(times(case.own.dead, chosen[each]) for each, case in cases.items()))
     stands = ", ".join(case.stands for case in cases.values() if case.stands)
-    return NamedLoads(Loads(dead=dead, live=together(*live) if live else None), place, factors.get(DEAD, 1.0), stands)
+    return _NamedLoads(Loads(dead=dead, live=together(*live) if live else None), place, factors.get(DEAD, 1.0), stands)
 
 
-def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None = None) -> Wall:
+def under_load_case(wall: Wall, name: str, known: dict[str, _NamedLoads] | None = None) -> Wall:
     """The wall under one of its load cases, whose dead load is added to that of `loads`.
 
     Args:
@@ -192,7 +192,7 @@ def under_load_case(wall: Wall, name: str, known: dict[str, NamedLoads] | None =
 
 
 def each_built(
-    wall: Wall, names: Mapping[str, str], known: dict[str, NamedLoads], laid: Laid | None = None
+    wall: Wall, names: Mapping[str, str], known: dict[str, _NamedLoads], laid: Laid | None = None
 ) -> Iterator[tuple[str, Wall, Built]]:
     """A wall under its load cases, one after another, with the assembly; blocks and joints are laid once.
 
@@ -225,7 +225,7 @@ def each_built(
         yield load_case, walls[load_case], built
 
 
-def _in_the_file(element: str, wall: Wall, load_case: str, known: dict[str, NamedLoads]) -> str:
+def _in_the_file(element: str, wall: Wall, load_case: str, known: dict[str, _NamedLoads]) -> str:
     """The place of a load in the file, where `element` is that of the wall under one load case."""
     found = re.fullmatch(r"loads\.(dead|live)(?:\.(\w+)(?:\[(\d+)\])?)?", element)
     if found is None:

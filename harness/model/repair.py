@@ -43,7 +43,7 @@ class _Move:
 
 
 @dataclass(frozen=True)
-class Repaired:
+class _Repaired:
     """A mended wall.
 
     Attributes:
@@ -57,7 +57,7 @@ class Repaired:
     splits: tuple[tuple[str, int], ...]
 
 
-def repair(wall: Wall, snap: float) -> Repaired:
+def repair(wall: Wall, snap: float) -> _Repaired:
     """The wall with gaps and overlaps closed; no vertex moves further than `snap` [length].
 
     Raises:
@@ -90,7 +90,7 @@ def repair(wall: Wall, snap: float) -> Repaired:
         if added:
             splits.append((block.id, added))
     mended = wall.model_copy(update={"pattern": None, "blocks": outlines})
-    return Repaired(mended, moves, tuple(doubles), tuple(splits))
+    return _Repaired(mended, moves, tuple(doubles), tuple(splits))
 
 
 def _pair(point: FloatArray) -> tuple[float, float]:

@@ -11,10 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from shapely.validation import explain_validity
 
 from harness.model.assembly import FloatArray, signed_area
-from harness.model.errors import InputError
 
 _Vertex = tuple[float, float]
 
@@ -73,19 +71,3 @@ def rings_of(line: FloatArray) -> list[FloatArray]:
             ring.append(vertex)
         rings.append(np.array(ring))
     return sorted(rings, key=lambda ring: -signed_area(ring))
-
-
-def hole_faults(outer: FloatArray, holes: Sequence[FloatArray], element: str) -> list[InputError]:
-    """What is wrong with the holes (i, 2) of a block whose outline (j, 2) is a polygon."""
-    stone = shapely.Polygon(outer)
-    faults = []
-    for number, hole in enumerate(holes):
-        cut = shapely.Polygon(hole)
-        if not cut.is_valid or cut.area <= 1e-12 * stone.area or not stone.covers(cut):
-            remedy = "Give the vertices in order round a hole inside its outline"
-            faults.append(InputError(f"holes[{number}] is no polygon within it", remedy, element))
-    whole = shapely.Polygon(outer, holes)
-    if not faults and not whole.is_valid:
-        why = f"its holes touch each other or its outline along a length ({explain_validity(whole)})"
-        faults.append(InputError(why, "Give them as one, or apart", element))
-    return faults

@@ -65,7 +65,7 @@ _LOOSE = 140
 
 
 @dataclass(frozen=True)
-class Attempt:
+class _Attempt:
     """Results of the attempt to certify a wall.
 
     Attributes:
@@ -83,7 +83,7 @@ def find_certificate(
     search: SearchSettings,
     nodes: int | None = None,
     say_before: Callable[[str], None] = lambda sentence: None,
-) -> Attempt:
+) -> _Attempt:
     """The certificate of the tree where that ends, else of windows.
 
     Args:
@@ -97,14 +97,14 @@ def find_certificate(
     most = Sizes().limits(search.effort, problem).nodes if nodes is None else nodes
     document = certificate(assembly, most) if most else None
     if document is not None:
-        return Attempt(document)
+        return _Attempt(document)
     newton = NewtonMatrix(problem)
     early = dead_load_answer(problem, newton, assembly.has_live_load)
     if early is not None:
-        return Attempt(None, early.sentence)
+        return _Attempt(None, early.sentence)
     too_large = beyond(problem, BoundSettings().most_interfaces)
     if too_large:
-        return Attempt(None, too_large)
+        return _Attempt(None, too_large)
     if problem.n_interfaces > _LOOSE:
         say_before(
             f"The wall has {problem.n_interfaces} interfaces: above {_LOOSE} the bound after some minutes "
@@ -113,16 +113,16 @@ def find_certificate(
         )
     known = least_known(problem, newton, search, LA_BOUND.tolerance)
     if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or known.multiplier is None:
-        return Attempt(None, known.sentence)
+        return _Attempt(None, known.sentence)
     if known.multiplier <= 0.0 or known.mechanism is None:
-        return Attempt(None, f"{known.sentence} A bound is sought below states above zero only.")
+        return _Attempt(None, f"{known.sentence} A bound is sought below states above zero only.")
     if most and known.details["proved_least"]:
         document = certificate(assembly, most, mechanism=known.mechanism)
         if document is not None:
-            return Attempt(document)
+            return _Attempt(document)
     began = time.process_time()
     found, document = certified_bracket(problem, known.multiplier, known.mechanism, seconds)
-    return Attempt(document, account(problem, known.multiplier, found, document, time.process_time() - began))
+    return _Attempt(document, account(problem, known.multiplier, found, document, time.process_time() - began))
 
 
 def beyond(problem: Problem, most: int) -> str:

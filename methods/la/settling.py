@@ -45,7 +45,7 @@ _WHY = {
 
 
 @dataclass(frozen=True, eq=False)
-class StandingState:
+class _StandingState:
     """A wall that has moved, and how it would move on.
 
     Attributes:
@@ -60,7 +60,7 @@ class StandingState:
     mechanism: FloatArray
 
 
-StateOf = Callable[[MovedWall], StandingState | str]
+StateOf = Callable[[MovedWall], _StandingState | str]
 """The state of a wall where it is, or a word for why there is none; `STUCK` where that is no fall."""
 
 
@@ -75,16 +75,16 @@ class SettledUntil:
         reason: why the wall was followed no further; empty where it falls.
     """
 
-    points: tuple[StandingState, ...]
+    points: tuple[_StandingState, ...]
     fall: MovedWall | None
     mechanism: FloatArray | None
     reason: str
 
 
-def _with_least_reaction(wall: MovedWall) -> StandingState | str:
+def _with_least_reaction(wall: MovedWall) -> _StandingState | str:
     """The least reaction of a wall as it stands, or how the programme ended."""
     found = extreme_reaction(wall.assembly, greatest=False, parted=~wall.closed)
-    return found if isinstance(found, str) else StandingState(wall, found.reaction, found.forces, found.mechanism)
+    return found if isinstance(found, str) else _StandingState(wall, found.reaction, found.forces, found.mechanism)
 
 
 def settle(
@@ -147,11 +147,11 @@ class _Failure:
 
     kind: str
     wall: MovedWall
-    start: StandingState
+    start: _StandingState
     step: float
 
 
-def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
+def _held(now: _StandingState, moves: float) -> tuple[BoolArray, str]:
     """(m, 2) ends of joints that go on to meet, and the blocks of one that slides under force or touching, if any."""
     assembly, mechanism = now.wall.assembly, now.mechanism
     rates = (assembly.kinematic_matrix @ mechanism[assembly.free].ravel()).reshape(-1, 3) + assembly.support_strains
@@ -165,7 +165,7 @@ def _held(now: StandingState, moves: float) -> tuple[BoolArray, str]:
     return held, " and ".join(assembly.block_ids[side[joint]] for side in (assembly.block_a, assembly.block_b))
 
 
-def _turns(now: StandingState, moves: float) -> bool:
+def _turns(now: _StandingState, moves: float) -> bool:
     """Whether a block turns: if none does, no joint that bears is strained; the state stays until one closes."""
     assembly, mechanism = now.wall.assembly, now.mechanism
     turning = float(abs(mechanism[:, 2]).max()) * assembly.length_scale
@@ -173,8 +173,8 @@ def _turns(now: StandingState, moves: float) -> bool:
 
 
 def _tried(
-    now: StandingState, step: float, held: BoolArray, closure: ClosureTolerances, state_of: StateOf
-) -> StandingState | _Failure:
+    now: _StandingState, step: float, held: BoolArray, closure: ClosureTolerances, state_of: StateOf
+) -> _StandingState | _Failure:
     """The wall after a step, or why the step is too long."""
     wall = now.wall.moved(now.mechanism, step, held, closure)
     if wall is None:
@@ -188,23 +188,23 @@ def _tried(
 
 
 def _advanced(
-    now: StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances, state_of: StateOf
-) -> tuple[StandingState, _Failure | None]:
+    now: _StandingState, step: float, held: BoolArray, width: float, closure: ClosureTolerances, state_of: StateOf
+) -> tuple[_StandingState, _Failure | None]:
     """The wall after a step; or, where that is too long, after the longest that is not, with why it is the longest."""
     found = _tried(now, step, held, closure, state_of)
-    if isinstance(found, StandingState):
+    if isinstance(found, _StandingState):
         return found, None
     best, low, high = now, 0.0, found
     while high.step - low > width:
         middle = _tried(now, 0.5 * (low + high.step), held, closure, state_of)
-        if isinstance(middle, StandingState):
+        if isinstance(middle, _StandingState):
             best, low = middle, middle.wall.displacement - now.wall.displacement
         else:
             high = middle
     return best, high
 
 
-def _fallen(points: list[StandingState], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
+def _fallen(points: list[_StandingState], failure: _Failure, held: BoolArray, steps: SettlingSteps) -> SettledUntil:
     """The end of a wall that falls, at the least displacement beyond its last at which a mechanism proves it.
 
     The programme may find no forces a hair before a mechanism does work beyond rounding.
@@ -249,7 +249,7 @@ def _falling(wall: MovedWall, immense: float) -> FloatArray | None:
     return mechanism
 
 
-def with_multiplier(wall: MovedWall) -> StandingState | str:
+def with_multiplier(wall: MovedWall) -> _StandingState | str:
     """The greatest multiplier of a wall as it stands, and its mechanism with a fastest vertex of speed one.
 
     Returns:
@@ -268,6 +268,6 @@ def with_multiplier(wall: MovedWall) -> StandingState | str:
         return FALLS
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = problem.velocities_of_blocks(found.kinematics.velocities)
-    return StandingState(
+    return _StandingState(
         wall, multiplier, problem.to_forces(found.statics.forces), mechanism / fastest_vertex(assembly, mechanism)
     )

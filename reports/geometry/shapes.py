@@ -125,7 +125,7 @@ def moving(assembly: Assembly, mechanism: FloatArray, smallest: float = 1e-3) ->
 
 
 @dataclass(frozen=True)
-class Arrow:
+class _Arrow:
     """A load on a block, drawn at the point its line of action passes through.
 
     Attributes:
@@ -139,7 +139,7 @@ class Arrow:
     force: FloatArray
 
 
-def load_arrows(assembly: Assembly, load: FloatArray) -> list[Arrow]:
+def load_arrows(assembly: Assembly, load: FloatArray) -> list[_Arrow]:
     """Generalised loads (n, 3) as arrows: at the centroid, or where their moment puts the line of action."""
     arrows = []
     largest = float(np.linalg.norm(load[:, :2], axis=1).max(initial=0.0))
@@ -149,7 +149,7 @@ def load_arrows(assembly: Assembly, load: FloatArray) -> list[Arrow]:
         if largest == 0.0 or square <= (1e-9 * largest) ** 2:
             continue
         arm = moment / square * np.array([force[1], -force[0]])
-        arrows.append(Arrow(block, assembly.centroid[block] + arm, force))
+        arrows.append(_Arrow(block, assembly.centroid[block] + arm, force))
     return arrows
 
 

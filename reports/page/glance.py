@@ -38,7 +38,7 @@ _PRINTED = Mark("#4a5763", "o", "solid")
 
 
 @dataclass(frozen=True)
-class Picture:
+class _Picture:
     """The mechanism of one family.
 
     Attributes:
@@ -66,7 +66,7 @@ class _GlancePart:
 
 
 @dataclass(frozen=True)
-class Glance:
+class _Glance:
     """The first screen.
 
     Attributes:
@@ -83,7 +83,7 @@ class Glance:
     headline: str
     number: int | None = None
     case: str = ""
-    pictures: list[Picture] = field(default_factory=list)
+    pictures: list[_Picture] = field(default_factory=list)
     sentence: str = ""
     parts: list[_GlancePart] = field(default_factory=list)
     governs: Governing | None = None
@@ -92,7 +92,7 @@ class Glance:
     further: list[tuple[str, str]] = field(default_factory=list)
 
 
-def glance(run: ComparisonRun) -> Glance:
+def glance(run: ComparisonRun) -> _Glance:
     """What a reader sees first: the paper's walls where they were run, otherwise the first wall with a mechanism."""
     built = [(number, item) for number, item in enumerate(run.cases) if not shapes.problem(item.case)]
     said = paper.printed()
@@ -102,7 +102,7 @@ def glance(run: ComparisonRun) -> Glance:
     block = next((item for _, item in built if item.case.id == said.block.case), None)
     own = _own(run, [item for _, item in built])
     if focus is None:
-        return Glance(headline(run), governs=own)
+        return _Glance(headline(run), governs=own)
     number, item = focus if own is None else next(pair for pair in built if pair[1] is own.item)
     parts = [] if block is None else [_block(block)]
     if item.case.id == said.wall.case:
@@ -113,7 +113,7 @@ def glance(run: ComparisonRun) -> Glance:
             _GlancePart("Multiplier by method", html(plot), "Filled: proved minimum. A bar is a measured bracket.")
         )
     drawing, words = _governing_mechanism(own)
-    return Glance(
+    return _Glance(
         headline(run),
         number,
         item.case.id,
@@ -178,14 +178,14 @@ def _own(run: ComparisonRun, items: list[CaseResults]) -> Governing | None:
     return governing(items)
 
 
-def pictures(item: CaseResults) -> list[Picture]:
+def pictures(item: CaseResults) -> list[_Picture]:
     """The mechanisms of the families at one scale: that of the one which allows the least."""
     assembly = item.case.assembly
     drawn = [r for r in mains(item) if r.mechanism is not None and len(r.mechanism) == assembly.n_blocks]
     fields = [np.asarray(result.mechanism, dtype=float) for result in drawn]
     scale = min((shapes.amplitude(assembly, each) for each in fields), default=0.0)
     return [
-        Picture(
+        _Picture(
             title=library().family_title(result.family, result.method),
             method=result.method,
             value=value_in_words(result),

@@ -74,7 +74,7 @@ class _Step:
 
 
 @dataclass(frozen=True)
-class Demonstration:
+class _Demonstration:
     """Where the sliders stand when the page opens: the paper's block.
 
     Attributes:
@@ -97,7 +97,7 @@ def write_learn(run: ComparisonRun, path: Path) -> None:
     write_whole(path, render(run))
 
 
-def render(run: ComparisonRun, start: Demonstration = Demonstration()) -> str:
+def render(run: ComparisonRun, start: _Demonstration = _Demonstration()) -> str:
     """The page as text, with its sliders at the start."""
     name = printed().block.case
     block = next(item for item in run.cases if item.case.id == name)

@@ -125,7 +125,7 @@ class Paper:
     experiment: str
     imperfection: str
     applied: list[str]
-    applications: list[ApplicationRow]
+    applications: list[_ApplicationRow]
 
 
 def _find(run: ComparisonRun, case: str) -> tuple[int, CaseResults] | None:
@@ -268,7 +268,7 @@ def _to_value(item: CaseResults, method: str) -> float | None:
 
 
 @dataclass(frozen=True)
-class ApplicationRow:
+class _ApplicationRow:
     """What a wall of the paper's application carries: the paper's text, and ours by method."""
 
     number: int
@@ -277,7 +277,7 @@ class ApplicationRow:
     ours: list[Cell]
 
 
-def applications(run: ComparisonRun) -> list[ApplicationRow]:
+def applications(run: ComparisonRun) -> list[_ApplicationRow]:
     """The walls of the paper's application that were run, in its unit: the dead part and the multiplier."""
     said = printed().application
     rows = []
@@ -287,7 +287,7 @@ def applications(run: ComparisonRun) -> list[ApplicationRow]:
             continue
         number, item = found
         ours = [_carried(_result(item, method), said.dead) for method in said.methods]
-        rows.append(ApplicationRow(number, item.case.file.title, row.printed, ours))
+        rows.append(_ApplicationRow(number, item.case.file.title, row.printed, ours))
     return rows
 
 

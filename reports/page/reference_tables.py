@@ -13,7 +13,7 @@ from reports.page.tables import Cell, anchor_of, expected_text, plain_cell, refe
 
 
 @dataclass(frozen=True)
-class HeldRow:
+class _HeldRow:
     """One result compared with one reference, ready to print.
 
     Attributes:
@@ -53,15 +53,15 @@ def compared_rows(item: CaseResults) -> Iterable[tuple[int, ComparedRow]]:
             yield number, ComparedRow(result, comparison, reference_of(item.case, comparison.reference))
 
 
-def reference_rows(run: ComparisonRun) -> dict[str, list[HeldRow]]:
+def reference_rows(run: ComparisonRun) -> dict[str, list[_HeldRow]]:
     """Rows of the tables of references, by purpose: verification, benchmark, validation, regression."""
-    tables: dict[str, list[HeldRow]] = {purpose: [] for purpose in labels.PURPOSE}
+    tables: dict[str, list[_HeldRow]] = {purpose: [] for purpose in labels.PURPOSE}
     for case_number, item in enumerate(run.cases):
         for number, row in compared_rows(item):
             if row.reference is not None:
                 kind = row.reference.type
                 purpose = next(name for name, entry in labels.PURPOSE.items() if kind in entry[1])
-                tables[purpose].append(HeldRow(anchor_of(case_number, number), row))
+                tables[purpose].append(_HeldRow(anchor_of(case_number, number), row))
     return tables
 
 

@@ -30,7 +30,7 @@ from reports.page.tables import RunRow
 
 
 @dataclass(frozen=True)
-class FoldedPanel:
+class _FoldedPanel:
     """One method's drawings.
 
     Attributes:
@@ -67,7 +67,7 @@ class CaseSection:
     facts: list[tuple[str, str]]
     warnings: tuple[str, ...]
     rows: list[RunRow]
-    panels: list[FoldedPanel]
+    panels: list[_FoldedPanel]
     without_drawing: list[RunRow]
     agreements: list[Agreement]
     curves: list[tuple[str, Markup]]
@@ -82,17 +82,17 @@ class CaseSection:
     bars: list[_BarRow] = field(default_factory=list)
 
     @property
-    def families(self) -> list[FoldedPanel]:
+    def families(self) -> list[_FoldedPanel]:
         """The drawings of the main method of every family."""
         return [panel for panel in self.drawn if panel.row.result.is_main]
 
     @property
-    def checks(self) -> list[FoldedPanel]:
+    def checks(self) -> list[_FoldedPanel]:
         """Those of the other methods."""
         return [panel for panel in self.drawn if not panel.row.result.is_main]
 
     @property
-    def drawn(self) -> list[FoldedPanel]:
+    def drawn(self) -> list[_FoldedPanel]:
         """Panels with a drawing."""
         return [panel for panel in self.panels if panel.mechanism or panel.forces]
 
@@ -144,7 +144,7 @@ def case_section(
             without.append(row)
             continue
         panels.append(
-            FoldedPanel(
+            _FoldedPanel(
                 row=row,
                 number=index,
                 mechanism=Markup("")

@@ -48,7 +48,7 @@ class _RedRow:
 
 
 @dataclass(frozen=True)
-class Summary:
+class _Summary:
     """The sentences of the first screen.
 
     Attributes:
@@ -62,7 +62,7 @@ class Summary:
     red: list[_RedRow]
 
 
-def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: Sequence[str] = ()) -> Summary:
+def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: Sequence[str] = ()) -> _Summary:
     """The sentences of a comparison: of one wall, or of a suite.
 
     Args:
@@ -78,7 +78,7 @@ def summary(run: ComparisonRun, governs: CaseResults | None = None, unanswered: 
         found.extend(_suite(items))
     elif least_known(governing) is None:
         found.append(wall_findings(governing))
-    return Summary([*found, *missed], advice, _red_rows(run))
+    return _Summary([*found, *missed], advice, _red_rows(run))
 
 
 @memo

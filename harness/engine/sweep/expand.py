@@ -84,7 +84,7 @@ def warnings_of(sources: Iterable[WallSource], runs: Sequence[SweepRun]) -> dict
 
 
 @dataclass(frozen=True, eq=False)
-class WallVariant:
+class _WallVariant:
     """One wall of a study: where it comes from and what was changed.
 
     Attributes:
@@ -159,9 +159,9 @@ class _Walls:
 
     def __init__(self, most: int = 64) -> None:
         self._most = most
-        self._kept: OrderedDict[WallVariant, Built] = OrderedDict()
+        self._kept: OrderedDict[_WallVariant, Built] = OrderedDict()
 
-    def built(self, variant: WallVariant) -> Built:
+    def built(self, variant: _WallVariant) -> Built:
         """A variant as it is built; raises as `WallVariant.assembly`."""
         found = self._kept.get(variant)
         if found is None:
@@ -181,12 +181,12 @@ class SweepRun(Run):
         varied: every quantity that the study varies and that this run depends on, by name.
     """
 
-    case: WallVariant
+    case: _WallVariant
     number: int = field(kw_only=True)
     varied: Mapping[str, Any] = field(kw_only=True)
 
     @property
-    def variant(self) -> WallVariant:
+    def variant(self) -> _WallVariant:
         """The wall."""
         return self.case
 
@@ -229,12 +229,12 @@ def expand(study: Study, sources: Sequence[WallSource]) -> list[SweepRun]:
         for assignment in itertools.product(*axes):
             grid = {name: value for part in assignment for name, value in part.items()}
             for draw, drawn in draws:
-                runs += _runs(study, WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
+                runs += _runs(study, _WallVariant(source, {}, draw, study.name, walls), grid | drawn, limits, len(runs))
     _check(study, runs)
     return runs
 
 
-def _runs(study: Study, wall: WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
+def _runs(study: Study, wall: _WallVariant, values: dict[str, Any], limits: Limits, first: int) -> Iterator[SweepRun]:
     """The runs on one wall. A method whose settings vary is run for each of them, the others once."""
     settings = {name: where for name in values if (where := setting_of(name)) is not None}
     of_wall = {name: value for name, value in values.items() if name not in settings}
@@ -255,7 +255,7 @@ def _check(study: Study, runs: Sequence[SweepRun]) -> None:
             remedy = did_you_mean(owner, study.methods) or "Name it in methods"
             raise InputError(f'"{name}" is a setting of {owner}, which the study does not run', remedy)
     seen: set[str] = set()
-    looked_at: WallVariant | None = None
+    looked_at: _WallVariant | None = None
     classes = {name: load_method(name).Settings for name in study.methods if _has_settings(study, name, owners)}
     for run in runs:
         if run.method in classes:

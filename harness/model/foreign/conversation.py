@@ -18,7 +18,7 @@ from harness.model.foreign.spawning import whole_address_space
 from harness.model.json_text import LARGEST_FILE, json_of, text_of
 
 
-class Conversation:
+class _Conversation:
     """The process of a program that answers by lines, started when it is needed and again after it was ended.
 
     It belongs to the process that started it: one that is forked from that starts another.
@@ -131,9 +131,9 @@ class Conversation:
 
 
 @functools.cache
-def conversation_with(program: Program) -> Conversation:
+def conversation_with(program: Program) -> _Conversation:
     """The conversation with a program, one in a process."""
-    made = Conversation(program)
+    made = _Conversation(program)
     atexit.register(made.end)
     return made
 

@@ -48,7 +48,7 @@ class CannotModel(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Strips:
+class _Strips:
     """The strips of all interfaces, in unit lengths.
 
     Attributes:
@@ -76,7 +76,7 @@ def require_lengths(assembly: Assembly) -> None:
         )
 
 
-def build_strips(assembly: Assembly, unit: float, shape: StripShape = StripShape()) -> Strips:
+def build_strips(assembly: Assembly, unit: float, shape: StripShape = StripShape()) -> _Strips:
     """The pair of strips of every interface, about the middle of the wall.
 
     Args:
@@ -101,7 +101,9 @@ def build_strips(assembly: Assembly, unit: float, shape: StripShape = StripShape
         return np.stack([face1, face2, face2 + tail - taper, face1 + tail + taper], axis=1)
 
     on_a, on_b = strip(-1.0, 0.0), strip(1.0, shape.overhang)
-    return Strips(on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=shape.margin * shape.rounding))
+    return _Strips(
+        on_a, on_b, colour_strips(np.concatenate([on_a, on_b], axis=1), margin=shape.margin * shape.rounding)
+    )
 
 
 def colour_strips(vertices: FloatArray, margin: float) -> IntArray:

@@ -94,7 +94,7 @@ class BracketState:
 
 
 @dataclass(frozen=True, eq=False)
-class RestState:
+class _RestState:
     """A state at rest whose contact forces (m, 3) [force] show that the wall bears this multiplier."""
 
     search: BracketSearch
@@ -102,7 +102,7 @@ class RestState:
     forces: FloatArray
 
 
-def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: float) -> RestState | None:
+def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: float) -> _RestState | None:
     """The highest state held whose contact forces are in balance as far as the judge asks; None if none is.
 
     Near collapse a state that is held may be followed further before its forces balance block by block; one below it,
@@ -120,7 +120,7 @@ def highest_shown(assembly: Assembly, searches: list[BracketSearch], tolerance: 
         forces = search.engine.contact_forces()
         left = _out_of_balance(assembly, forces, assembly.dead + multiplier * assembly.live)
         if float(left.max(initial=0.0)) <= tolerance:
-            return RestState(search, multiplier, forces)
+            return _RestState(search, multiplier, forces)
     return None
 
 
@@ -155,7 +155,7 @@ def _without_rest(known: BracketState) -> Answer:
     return undecided()
 
 
-def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket], stood: RestState) -> Answer:
+def _with_rest(assembly: Assembly, known: BracketState, found: list[OrderBracket], stood: _RestState) -> Answer:
     """A state at rest is shown; the upper end is that of the motions above it, if there are any."""
     if not assembly.has_live_load:
         return Answer(Status.OK, Finding.STANDS, f"the dead load is held in {_so_far(known)}; {SEARCH_STOPPED}")

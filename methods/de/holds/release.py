@@ -13,7 +13,7 @@ from methods.de.settings import ReleaseSettings
 
 
 @dataclass(frozen=True, eq=False)
-class Collapse:
+class _Collapse:
     """A collapse that was followed.
 
     Attributes:
@@ -31,7 +31,7 @@ class Collapse:
     separated: list[int]
 
 
-def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) -> Collapse:
+def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) -> _Collapse:
     """Release the wall from rest at this multiplier and follow it.
 
     Args:
@@ -63,7 +63,7 @@ def release(assembly: Assembly, multiplier: float, settings: ReleaseSettings) ->
     last = history[-1]
     reached = bool(np.abs(last[:, :2]).max() >= settings.reach * assembly.length_scale)
     apart = separated(assembly, last, settings.gap * assembly.length_scale)
-    return Collapse(np.array(times)[chosen], history[chosen], work[chosen], reached, apart)
+    return _Collapse(np.array(times)[chosen], history[chosen], work[chosen], reached, apart)
 
 
 def even_frames(travel: FloatArray, count: int) -> list[int]:

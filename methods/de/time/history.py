@@ -36,7 +36,7 @@ _STILL = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class TimeHistory:
+class _TimeHistory:
     """A motion that was followed. k states.
 
     Attributes:
@@ -63,7 +63,7 @@ def tuning(steps: TimeSteps) -> BodyTuning:
     return BodyTuning(steps.time_step, steps.radius, steps.slop)
 
 
-class Count(NamedTuple):
+class _Count(NamedTuple):
     """How many steps a motion takes.
 
     Attributes:
@@ -79,12 +79,12 @@ class Count(NamedTuple):
     stride: int
 
 
-def count_steps(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> Count:
+def count_steps(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> _Count:
     """The steps of a motion; gravity in lengths of the wall per s2."""
     step = steps.time_step * float(np.sqrt(assembly.length_scale / gravity))
     moving, after = (int(np.ceil(seconds / step)) for seconds in (motion.duration, steps.after))
     frames = min(steps.frames, max(200, 100 * steps.frames // assembly.n_blocks))
-    return Count(step, moving, after, int(np.ceil((moving + after) / frames)))
+    return _Count(step, moving, after, int(np.ceil((moving + after) / frames)))
 
 
 def _load_contacts(space: PymunkBlocks, steps: TimeSteps) -> bool:
@@ -103,7 +103,7 @@ def _load_contacts(space: PymunkBlocks, steps: TimeSteps) -> bool:
     return False
 
 
-def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> TimeHistory:
+def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: TimeSteps) -> _TimeHistory:
     """Follow a wall from rest until it has fallen, all motion has died, or the time is over.
 
     It has fallen when a block lies below all supports. Once the ground does no more work it has also fallen when a
@@ -154,7 +154,7 @@ def follow(assembly: Assembly, motion: GroundMotion, gravity: float, steps: Time
                 finding = Finding.FALLS
             elif at_rest:
                 finding = Finding.STANDS
-    return TimeHistory(
+    return _TimeHistory(
         finding,
         np.array(times),
         np.array(places),

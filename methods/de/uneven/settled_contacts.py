@@ -34,7 +34,7 @@ _SEGMENT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Settled:
+class _Settled:
     """An uneven wall at rest under its dead load.
 
     Attributes:
@@ -81,7 +81,7 @@ def settle_uneven(
     faces: Faces = "both",
     seed: int = 0,
     most_steps: int = 20_000,
-) -> Settled:
+) -> _Settled:
     """Let the wall of uneven blocks come to rest under its dead load and take its contacts.
 
     Args:
@@ -95,7 +95,7 @@ def settle_uneven(
     space = PymunkBlocks(assembly, outlines, _DAMPING)
     before, at_rest = _come_to_rest(space, most_steps, np.inf)
     settled, single = with_contacts(assembly, space, before)
-    return Settled(settled, at_rest, outlines, before, single)
+    return _Settled(settled, at_rest, outlines, before, single)
 
 
 def _come_to_rest(space: PymunkBlocks, most_steps: int, reach: float) -> tuple[FloatArray, bool]:

@@ -133,7 +133,7 @@ class NewtonMatrix:
         self._diagonal = np.flatnonzero(unique % self.size == unique // self.size)
         self._n_values = len(unique)
 
-    def factorise(self, flexibility: FloatArray, relative: float, shift: float = 0.0) -> NewtonFactor:
+    def factorise(self, flexibility: FloatArray, relative: float, shift: float = 0.0) -> _NewtonFactor:
         """LU factors of K + relative * diag(K) + shift * I, with pivots from the diagonal.
 
         Args:
@@ -152,10 +152,10 @@ class NewtonMatrix:
             factors = BlockFactor(self.pattern, values)
             if not factors.factorise(symmetric=bool((flexibility == flexibility.transpose(0, 2, 1)).all())):
                 raise SingularMatrix("the Newton matrix is singular")
-            return NewtonFactor(factors, self.order)
+            return _NewtonFactor(factors, self.order)
         return self._by_columns(values, self._indices, self._pointers, self.order)
 
-    def factorise_copies(self, flexibility: FloatArray, relative: float) -> NewtonFactor:
+    def factorise_copies(self, flexibility: FloatArray, relative: float) -> _NewtonFactor:
         """LU factors of K of copies of a wall, as of one matrix; of a single copy if that is `large`.
 
         Args:
@@ -181,10 +181,10 @@ class NewtonMatrix:
 
     def _by_columns(
         self, values: FloatArray, indices: NDArray[np.int32], pointers: NDArray[np.int32], order: IntArray
-    ) -> NewtonFactor:
+    ) -> _NewtonFactor:
         matrix = sp.csc_matrix((values, indices, pointers), shape=(len(order), len(order)))
         options = {"SymmetricMode": True}
-        return NewtonFactor(sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), order)
+        return _NewtonFactor(sparse_lu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options), order)
 
     def _assembled(self, flexibility: FloatArray) -> FloatArray:
         """The entries of K for flexibilities (m, 3, 3), where they stand in the factor."""
@@ -196,7 +196,7 @@ class NewtonMatrix:
         return cast(FloatArray, np.bincount(self._slot, products[self._used], self._n_values))
 
 
-class NewtonFactor:
+class _NewtonFactor:
     """Factors of K that solve in the numbering of the problem."""
 
     def __init__(self, factors: SuperLU | BlockFactor, order: IntArray) -> None:

@@ -34,7 +34,7 @@ _BADLY_SCALED = 1e3
 
 
 @dataclass(frozen=True)
-class ExtremeSolution:
+class _ExtremeSolution:
     """Forces of the greatest or least multiplier, and the dilatant mechanism dual to them: with or against the load."""
 
     statics: StaticSolution
@@ -50,7 +50,7 @@ class RowScaling:
 
 
 @dataclass(frozen=True, eq=False)
-class DeadWork:
+class _DeadWork:
     """The least -dead.u of mechanisms, and the contacts (m, 4) that must be at rest for the forces that prove it."""
 
     work: float
@@ -99,7 +99,7 @@ class ForceProgramme:
         rows[len(self._equilibrium[1]) :] += n
         return sp.csc_matrix((values, (rows, columns)), shape=(n + 2 * m, 3 * m + self._loads))
 
-    def extreme(self, greatest: bool, tight: BoolArray | None = None, solver: str = "auto") -> ExtremeSolution | str:
+    def extreme(self, greatest: bool, tight: BoolArray | None = None, solver: str = "auto") -> _ExtremeSolution | str:
         """The greatest or, from zero on, the least multiplier of statics; or how the programme ended without one.
 
         Args:
@@ -119,7 +119,7 @@ class ForceProgramme:
         velocities, rates = self._motion(vertex)
         work = abs(float(self.problem.live @ velocities))
         scale = self.problem.live_work / work if work > 0.0 else 1.0
-        return ExtremeSolution(
+        return _ExtremeSolution(
             StaticSolution(self._forces(vertex), float(vertex.value[-1]), iterations),
             KinematicSolution(scale * velocities, scale * rates),
         )
@@ -162,7 +162,7 @@ class ForceProgramme:
             (limits, np.where(tight[:, 2:].ravel(), limits, INFINITY)),
         )
 
-    def least_dead_work(self, still: BoolArray) -> DeadWork | str:
+    def least_dead_work(self, still: BoolArray) -> _DeadWork | str:
         """The least -dead.u of mechanisms with unit live work, at rest in contacts `still` (m, 4).
 
         Their slips lift by the joints' own dilatancy.
@@ -183,7 +183,7 @@ class ForceProgramme:
             return found
         return replace(alone, work=np.inf)
 
-    def _dead_work(self, still: BoolArray, dead: FloatArray, most_live: float) -> DeadWork | str:
+    def _dead_work(self, still: BoolArray, dead: FloatArray, most_live: float) -> _DeadWork | str:
         """The programme of `least_dead_work` beside another dead load and with a multiplier of at most so much."""
         m = self.problem.n_interfaces
         lower = np.where(still[:, :2], -INFINITY, 0.0)
@@ -204,7 +204,7 @@ class ForceProgramme:
             return solved
         first, second, shear = solved[0].value[: 3 * m].reshape(-1, 3).T
         needs = np.column_stack([first < 0.0, second < 0.0, shear < 0.0, shear > 0.0])
-        return DeadWork(float(solved[0].value[-1]), needs | self.problem.dilates)
+        return _DeadWork(float(solved[0].value[-1]), needs | self.problem.dilates)
 
     def _solved(
         self,
@@ -323,6 +323,6 @@ def standing(problem: Problem) -> StaticSolution | KinematicSolution | str:
     return found.statics if _carries_all(problem, found) else found.kinematics
 
 
-def _carries_all(problem: Problem, found: ExtremeSolution, rounding: float = 1e-9) -> bool:
+def _carries_all(problem: Problem, found: _ExtremeSolution, rounding: float = 1e-9) -> bool:
     """Whether the least part of the dead load that is not carried is none, but for rounding where it may be any."""
     return found.statics.multiplier <= (0.5 if problem.law.is_cone else rounding)

@@ -23,7 +23,7 @@ from methods.numerics.failures import NumericalFailure
 
 
 @dataclass
-class Points:
+class _Points:
     """Points of k paths, scaled, or changes of them: slacks and rates (k, m, 4), multipliers (k,), velocities (k, 3n).
 
     Attributes:
@@ -35,14 +35,14 @@ class Points:
     velocities: FloatArray
     rates: FloatArray
 
-    def of(self, chosen: BoolArray) -> Points:
+    def of(self, chosen: BoolArray) -> _Points:
         """The points of some of the paths."""
-        return Points(self.slack[chosen], self.multiplier[chosen], self.velocities[chosen], self.rates[chosen])
+        return _Points(self.slack[chosen], self.multiplier[chosen], self.velocities[chosen], self.rates[chosen])
 
-    def plus(self, lengths: FloatArray, change: Points) -> Points:
+    def plus(self, lengths: FloatArray, change: _Points) -> _Points:
         """The points after steps of these lengths (k,)."""
         each = lengths[:, None, None]
-        return Points(
+        return _Points(
             self.slack + each * change.slack,
             self.multiplier + lengths * change.multiplier,
             self.velocities + lengths[:, None] * change.velocities,
@@ -50,10 +50,10 @@ class Points:
         )
 
 
-class NewtonSteps:
+class _NewtonSteps:
     """The Newton systems of k paths: residuals, and once they are `factorised`, directions for any targets."""
 
-    def __init__(self, problem: Problem, dead: FloatArray, points: Points, tight: BoolArray) -> None:
+    def __init__(self, problem: Problem, dead: FloatArray, points: _Points, tight: BoolArray) -> None:
         self.problem, self.points, self.tight = problem, points, tight
         self.inside = np.where(tight, np.inf, points.slack), np.where(tight, np.inf, points.rates)
         count, law = len(dead), problem.law
@@ -83,7 +83,7 @@ class NewtonSteps:
         """(k,) greatest residuals of equilibrium and compatibility, scaled."""
         return np.asarray(np.maximum(abs(self.statics).max(axis=1), abs(self.kinematics).max(axis=(1, 2))))
 
-    def direction(self, target: FloatArray) -> Points:
+    def direction(self, target: FloatArray) -> _Points:
         """Newton directions towards y o g = target (k, m, 4)."""
         rate_shift = np.where(self.tight, 0.0, target / self.inside[0] - self.points.rates)
         shift = self._strains_of_rates(rate_shift) - self.kinematics
@@ -92,9 +92,9 @@ class NewtonSteps:
         velocities = by_load + multiplier[:, None] * self.by_live
         slack = self.compliance.response((shift - self._strains(velocities)).reshape(-1, 3))[1]
         slack = np.where(self.tight, 0.0, slack.reshape(target.shape))
-        return Points(slack, multiplier, velocities, rate_shift - np.where(self.tight, 0.0, self.weight * slack))
+        return _Points(slack, multiplier, velocities, rate_shift - np.where(self.tight, 0.0, self.weight * slack))
 
-    def lengths(self, change: Points, fraction: float) -> FloatArray:
+    def lengths(self, change: _Points, fraction: float) -> FloatArray:
         """(k,) step lengths of at most 1 that go this part of the way to the boundary."""
         slack, rates = self.inside
         steepest = -np.minimum((change.slack / slack).min(axis=(1, 2)), (change.rates / rates).min(axis=(1, 2)))
@@ -138,13 +138,13 @@ def path_ends(
     """
     tight = close_tight(problem)
     pairs, first, count = max(int((~tight).sum()), 1), start_point(problem, tight), len(dead)
-    here = Points(
+    here = _Points(
         *(np.repeat(part[None], count, axis=0) for part in (first.slack, np.zeros(()), first.velocities, first.rates))
     )
     slack, rates, steps = [], [], 0
     for _ in range(most):
         problem.deadline.ask()
-        step = NewtonSteps(problem, dead, here, tight)
+        step = _NewtonSteps(problem, dead, here, tight)
         ended = (step.product.sum(axis=(1, 2)) <= gap * problem.live_work) & (step.residual <= 10.0 * gap)
         slack += list(here.slack[ended])
         rates += list(here.rates[ended])
@@ -152,7 +152,7 @@ def path_ends(
             break
         if ended.any():
             here, dead = here.of(~ended), dead[~ended]
-            step = NewtonSteps(problem, dead, here, tight)
+            step = _NewtonSteps(problem, dead, here, tight)
         try:
             step.factorised(newton)
         except NumericalFailure:
@@ -167,7 +167,7 @@ def path_ends(
     return np.reshape(slack, shape), np.reshape(rates, shape), steps
 
 
-def _centred(step: NewtonSteps, pairs: int, options: Centring) -> tuple[FloatArray, Points]:
+def _centred(step: _NewtonSteps, pairs: int, options: Centring) -> tuple[FloatArray, _Points]:
     """The lengths of Mehrotra's predictor-corrector steps (1992), and their directions."""
     predictor = step.direction(np.zeros(step.product.shape))
     lengths = step.lengths(predictor, 1.0)

@@ -16,7 +16,7 @@ LEAST_IMPROVEMENT = 1e-10
 
 
 @dataclass(frozen=True)
-class Improvement:
+class _Improvement:
     """A state lower than all before it, its source, the CPU time of the process [s] and the work done until then."""
 
     state: CollapseState
@@ -26,7 +26,7 @@ class Improvement:
 
 
 @dataclass
-class Tried:
+class _Tried:
     """What one source led to: states, and the states that descents from them end at; CPU seconds and work it took."""
 
     source: str
@@ -45,8 +45,8 @@ class Record:
     """
 
     def __init__(self) -> None:
-        self.improvements: list[Improvement] = []
-        self.tried: list[Tried] = []
+        self.improvements: list[_Improvement] = []
+        self.tried: list[_Tried] = []
         self.source = ""
         self.began = time.process_time()
 
@@ -79,20 +79,20 @@ class Record:
         return any(tried.source != source and tried.states for tried in self.tried)
 
     @contextmanager
-    def trying(self, source: str, spent: Work) -> Iterator[Tried]:
+    def trying(self, source: str, spent: Work) -> Iterator[_Tried]:
         """Note what is found and spent in this time as of a source; `spent` is the count that goes on."""
         before, began = replace(spent), time.process_time()
         self.source = source
-        tried = Tried(source)
+        tried = _Tried(source)
         self.tried.append(tried)
         try:
             yield tried
         finally:
             tried.seconds, tried.work = time.process_time() - began, spent.since(before)
 
-    def _by_name(self) -> dict[str, list[Tried]]:
+    def _by_name(self) -> dict[str, list[_Tried]]:
         """What was tried, of sources that stand at several places of the order together."""
-        groups: dict[str, list[Tried]] = {}
+        groups: dict[str, list[_Tried]] = {}
         for tried in self.tried:
             groups.setdefault(tried.source, []).append(tried)
         return groups
@@ -100,7 +100,7 @@ class Record:
     def note(self, state: CollapseState, work: Work) -> None:
         """Keep a state if none known is lower."""
         if state.multiplier < self.least - LEAST_IMPROVEMENT:
-            self.improvements.append(Improvement(state, self.source, time.process_time(), replace(work)))
+            self.improvements.append(_Improvement(state, self.source, time.process_time(), replace(work)))
 
     def path(self, unit: float) -> dict[str, list[float]]:
         """When which multiplier was the least known: CPU seconds since the search began, multipliers."""
@@ -125,11 +125,11 @@ class Record:
         }
 
 
-def _begun(group: list[Tried]) -> bool:
+def _begun(group: list[_Tried]) -> bool:
     return any(tried.states or tried.work != Work() for tried in group)
 
 
-def _row(name: str, group: list[Tried], unit: float) -> dict[str, Any]:
+def _row(name: str, group: list[_Tried], unit: float) -> dict[str, Any]:
     counts = [_counts(tried.work) for tried in group]
     return {
         "source": name,

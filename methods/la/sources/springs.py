@@ -50,7 +50,7 @@ _RIGHT = 1e-6
 
 
 @dataclass(frozen=True)
-class PathStart:
+class _PathStart:
     """The beginning of a path, the jumps tried where it turns down, and the multiplier between two commits."""
 
     follower: PathFollower
@@ -58,7 +58,7 @@ class PathStart:
     interval: float = np.inf
 
 
-Start = Callable[[], PathStart | None]
+Start = Callable[[], _PathStart | None]
 """Makes the beginning of a path where that is possible. Raises SingularTangent."""
 
 
@@ -79,7 +79,7 @@ class CommittedHistories:
         for ratio in self.ratios:
             yield partial(self._from_gravity, search, ratio)
 
-    def _from_gravity(self, search: Search, ratio: float) -> PathStart | None:
+    def _from_gravity(self, search: Search, ratio: float) -> _PathStart | None:
         """The path with kt/kn = ratio; None without equilibrium, or where no multiplier is known to measure commits."""
         least = _scale(search)
         gravity = gravity_of(search.problem, ratio)
@@ -149,7 +149,7 @@ class LowPrestress:
         for k in range(2 * problem.n_interfaces):
             yield partial(self._from_mixture, search, k)
 
-    def _from_mixture(self, search: Search, k: int) -> PathStart | None:
+    def _from_mixture(self, search: Search, k: int) -> _PathStart | None:
         """The path from the k-th mixture of a random vertex of statics, gravity's and central forces.
 
         Returns:
@@ -196,7 +196,7 @@ class ShiftedAssociated:
         if not (search.record.known or search.associated.outcome == "unbounded"):
             yield from (state for _, state in _ends(search, iter([partial(self._start, search)])))
 
-    def _start(self, search: Search) -> PathStart | None:
+    def _start(self, search: Search) -> _PathStart | None:
         """From the wall with smooth unloaded joints, if it has any."""
         guide = with_reduced_friction(search.problem, 0.0) or search.problem
         safe = follow_path(guide, search.newton, start_point(guide), self.left)
@@ -266,7 +266,7 @@ def _right_angled(problem: Problem, sine: float) -> bool:
     return bool(off.max() < sine)
 
 
-def _from_gravity(search: Search, gravity: Gravity, scale: float, interval: float = np.inf) -> PathStart | None:
+def _from_gravity(search: Search, gravity: Gravity, scale: float, interval: float = np.inf) -> _PathStart | None:
     """The path from the forces that gravity causes in a wall without self-stress; None if there are none.
 
     Args:
@@ -284,7 +284,7 @@ def _from_gravity(search: Search, gravity: Gravity, scale: float, interval: floa
         for further in doubled(model, factor, first):
             first = further
     follower = PathFollower.from_rest(model, factor, first, _CERTIFICATE)
-    return PathStart(follower, model.options.jumps, interval)
+    return _PathStart(follower, model.options.jumps, interval)
 
 
 def _scale(search: Search) -> float:
@@ -292,7 +292,7 @@ def _scale(search: Search) -> float:
     return min(search.record.least, search.associated.greatest) * search.problem.unit_multiplier
 
 
-def _from_central_forces(search: Search, ratio: float, share: float = np.inf) -> PathStart | None:
+def _from_central_forces(search: Search, ratio: float, share: float = np.inf) -> _PathStart | None:
     """The path from forces well within yield under the dead load, with commits as from gravity if any."""
     forces = search.central_forces
     if forces is None:
@@ -304,15 +304,15 @@ def _from_central_forces(search: Search, ratio: float, share: float = np.inf) ->
     return replace(path_start, jumps=jumps, interval=share * _scale(search))
 
 
-def _from_forces(search: Search, forces: FloatArray, multiplier: float, ratio: float) -> PathStart:
+def _from_forces(search: Search, forces: FloatArray, multiplier: float, ratio: float) -> _PathStart:
     """The path from scaled forces (m, 3) in equilibrium with a scaled multiplier. Raises SingularTangent."""
     problem = search.problem
     model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
     start = multiplier * problem.unit_multiplier, problem.to_forces(forces)
-    return PathStart(PathFollower.from_forces(model, make_factor(model), *start, _CERTIFICATE))
+    return _PathStart(PathFollower.from_forces(model, make_factor(model), *start, _CERTIFICATE))
 
 
-def _collapse_state(search: Search, path_start: PathStart) -> CollapseState | None:
+def _collapse_state(search: Search, path_start: _PathStart) -> CollapseState | None:
     """The collapse state at the end of a path; None also below a multiplier of zero."""
     problem, record, model = search.problem, PathRecord(), path_start.follower.model
     most = _MOST_BREAKPOINTS * model.n_points

@@ -40,7 +40,7 @@ class Certifier:
     def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
         self.wall, self.scales = wall, scales
         self.documents: list[dict[str, Any]] = []
-        self.cases: CaseCertifier | None = None
+        self.cases: _CaseCertifier | None = None
         self.refused = ""
         self._programme = SlackProgramme(equations)
         self._proved = Fraction(0)
@@ -75,12 +75,12 @@ class Certifier:
             self._last = proof.relaxation, states_of(writer.limits, greatest, bound)
         return self.scales.scaled(self._proved)
 
-    def part(self, at: Division, first: bool) -> CaseCertifier | None:
+    def part(self, at: Division, first: bool) -> _CaseCertifier | None:
         """The certificate of half of the states of the last window; None if none is proved."""
         if self._last is None:
             return None
         if self.cases is None:
-            self.cases = CaseCertifier(self.scales, self._programme, self._last[1])
+            self.cases = _CaseCertifier(self.scales, self._programme, self._last[1])
         return self.cases.part(at, first)
 
     def slacks(self, bounds: SlackBounds) -> None:
@@ -95,7 +95,7 @@ class Certifier:
         return self.scales.scaled(self._proved)
 
 
-class CaseCertifier:
+class _CaseCertifier:
     """What is proved of the states of one case, step by step, and of its halves once it is divided.
 
     Args:
@@ -107,7 +107,7 @@ class CaseCertifier:
     def __init__(self, scales: Scales, programme: SlackProgramme, states: States) -> None:
         self._scales, self._programme, self._states = scales, programme, states
         self._steps: list[dict[str, Any]] = []
-        self._halves: dict[bool, CaseCertifier] = {}
+        self._halves: dict[bool, _CaseCertifier] = {}
         self._at: dict[str, Any] = {}
         self._before = states
         self._last: Relaxation | None = None
@@ -138,7 +138,7 @@ class CaseCertifier:
                 needs |= _needs_of(step, self._states)
         return node | {"steps": steps[::-1]}, needs
 
-    def part(self, at: Division, first: bool) -> CaseCertifier:
+    def part(self, at: Division, first: bool) -> _CaseCertifier:
         """Of the first or the second half of a division."""
         if isinstance(at, AtContact):
             self._at = {"contact": at.contact}
@@ -146,7 +146,7 @@ class CaseCertifier:
             normal = below(at.normal / float(self._scales.length[at.interface]))
             self._at = {"interface": at.interface, "normal": str(normal)}
         half = self._states.halves(self._at)[0 if first else 1]
-        self._halves[first] = CaseCertifier(self._scales, self._programme, half)
+        self._halves[first] = _CaseCertifier(self._scales, self._programme, half)
         return self._halves[first]
 
     def window(self, proof: WindowProof, needed: float) -> float:
