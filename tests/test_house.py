@@ -60,7 +60,7 @@ def test_no_module_and_no_test_imports_a_private_name():
 
 PRIVATE = {
     "harness/engine/worker.py: os._exit",  # documented: ends a child without what its parent has registered
-    "methods/de/engines/sequential_impulses.py: _Rows._make",  # of named tuples, documented
+    "methods/de/engines/sequential_impulses.py: Rows._make",  # of named tuples, documented
     "methods/dummy.py: os._exit",
     "methods/numerics/forks.py: os._exit",
     "methods/de/engines/pymunk_joints.py: arbiter._arbiter",  # the impulse of each contact point, not of the pair alone

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.model.assembly import Assembly, FloatArray
+from harness.model.assembly import OF_BLOCKS, Assembly, FloatArray
 
 
 def _mapped(assembly: Assembly, matrix: FloatArray, shift: FloatArray, length: float, flip: bool) -> Assembly:
@@ -83,30 +83,16 @@ def renumbered(assembly: Assembly, seed: int = 1) -> Assembly:
     joints = rng.permutation(assembly.n_interfaces)
     swap = np.arange(assembly.n_interfaces) % 2 == 1
     a, b = place[assembly.block_a[joints]], place[assembly.block_b[joints]]
+    wall = assembly.with_joints(joints)
     return replace(
-        assembly,
+        wall,
         block_ids=tuple(assembly.block_ids[k] for k in blocks),
         polygons=tuple(assembly.polygons[k] for k in blocks),
-        centroid=assembly.centroid[blocks],
-        weight=assembly.weight[blocks],
-        fixed=assembly.fixed[blocks],
-        dead=assembly.dead[blocks],
-        live=assembly.live[blocks],
-        support_motion=assembly.support_motion[blocks],
+        **{name: getattr(assembly, name)[blocks] for name in OF_BLOCKS if name != "polygons"},
         block_a=np.where(swap, b, a),
         block_b=np.where(swap, a, b),
-        end1=assembly.end1[joints],
-        end2=assembly.end2[joints],
-        face1=assembly.face1[joints],
-        face2=assembly.face2[joints],
-        normal=np.where(swap[:, None], -1.0, 1.0) * assembly.normal[joints],
-        friction=assembly.friction[joints],
-        dilatancy=assembly.dilatancy[joints],
-        constant=np.where(swap[:, None], assembly.constant[joints][:, [0, 1, 3, 2]], assembly.constant[joints]),
-        crushing=assembly.crushing[joints],
-        bar_stiffness=assembly.bar_stiffness[joints],
-        brittle=assembly.brittle[joints],
-        joint=tuple(assembly.joint[k] for k in joints),
+        normal=np.where(swap[:, None], -1.0, 1.0) * wall.normal,
+        constant=np.where(swap[:, None], wall.constant[:, [0, 1, 3, 2]], wall.constant),
         bars=assembly.bars.chosen(rng.permutation(len(assembly.bars)), place),
     )
 

@@ -16,9 +16,10 @@ Sign conventions, used everywhere in Drystone
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,8 @@ _OF_JOINTS = (
     "brittle",
     "bar_stiffness",
 )
+_PLAIN = {"constant": 0.0, "crushing": np.inf, "brittle": False, "bar_stiffness": 0.0, "support_motion": 0.0}
+"""What joints and blocks have in an array that is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,16 +116,11 @@ class Assembly:
         Raises:
             ValueError: if not, naming the array.
         """
-        if not len(self.constant):
-            object.__setattr__(self, "constant", np.zeros((len(self.joint), 4)))
-        if not len(self.crushing):
-            object.__setattr__(self, "crushing", np.full(len(self.joint), np.inf))
-        if not len(self.brittle):
-            object.__setattr__(self, "brittle", np.zeros(len(self.joint), dtype=bool))
-        if not len(self.bar_stiffness):
-            object.__setattr__(self, "bar_stiffness", np.zeros(len(self.joint)))
-        if not len(self.support_motion):
-            object.__setattr__(self, "support_motion", np.zeros((len(self.block_ids), 3)))
+        for name, plain in _PLAIN.items():
+            given = getattr(self, name)
+            if not len(given):
+                count = len(self.block_ids if name in OF_BLOCKS else self.joint)
+                object.__setattr__(self, name, np.full((count, *given.shape[1:]), plain))
         for names, count in ((OF_BLOCKS, len(self.block_ids)), (_OF_JOINTS, len(self.joint))):
             for name in names:
                 if len(getattr(self, name)) != count:
@@ -145,6 +143,22 @@ class Assembly:
         index = np.arange(self.n_interfaces)[kept]
         arrays = {name: getattr(self, name)[index] for name in _OF_JOINTS}
         return replace(self, joint=tuple(self.joint[p] for p in index), **arrays)
+
+    def with_further_joints(self, names: Sequence[str], **arrays: NDArray[Any]) -> Assembly:
+        """The wall with further joints behind those that it has.
+
+        Args:
+            names: (k,) of the joints.
+            arrays: (k, ...) of them by name; those that are left out have what plain joints have.
+        """
+        further = {
+            name: arrays[name]
+            if name in arrays
+            else np.full((len(names), *getattr(self, name).shape[1:]), _PLAIN[name])
+            for name in _OF_JOINTS
+        }
+        joined: dict[str, Any] = {name: np.concatenate([getattr(self, name), more]) for name, more in further.items()}
+        return replace(self, joint=(*self.joint, *names), **joined)
 
     def copied(self) -> Assembly:
         """The same wall in arrays of its own: what a method does to them changes no other."""

@@ -126,23 +126,21 @@ def with_bars_as_joints(assembly: Assembly) -> Assembly:
     if not k:
         return assembly
     minus, nothing = np.full(k, -1.0), np.zeros((k, 2))
-    further: dict[str, Any] = {
-        "block_a": bars.block_a,
-        "block_b": bars.block_b,
-        "end1": bars.end1,
-        "end2": bars.end2,
-        "face1": bars.end1,
-        "face2": bars.end2,
-        "normal": nothing,
-        "friction": minus,
-        "dilatancy": minus,
-        "constant": np.column_stack([nothing, bars.greatest, 0.0 - bars.least]),
-        "crushing": np.full(k, np.inf),
-        "brittle": np.zeros(k, dtype=bool),
-        "bar_stiffness": bars.stiffness,
-    }
-    arrays: dict[str, Any] = {name: np.concatenate([getattr(assembly, name), more]) for name, more in further.items()}
-    return replace(assembly, joint=(*assembly.joint, *bars.names), bars=Bars(), **arrays)
+    wall = assembly.with_further_joints(
+        bars.names,
+        block_a=bars.block_a,
+        block_b=bars.block_b,
+        end1=bars.end1,
+        end2=bars.end2,
+        face1=bars.end1,
+        face2=bars.end2,
+        normal=nothing,
+        friction=minus,
+        dilatancy=minus,
+        constant=np.column_stack([nothing, bars.greatest, 0.0 - bars.least]),
+        bar_stiffness=bars.stiffness,
+    )
+    return replace(wall, bars=Bars())
 
 
 def tensions(bars: Bars, forces: FloatArray) -> FloatArray:

@@ -56,37 +56,32 @@ def in_series(assembly: Assembly, limits: FurtherLimits) -> Assembly:
         second[i], beyond[p] = beyond[p], layer[i]
     first = assembly.block_a[joint]
     like = np.where(assembly.fixed[first], assembly.block_b[joint], first)  # which the typical size of blocks counts
-    nothing, never = np.zeros((k, 3)), np.zeros(k, dtype=bool)
     of_blocks: dict[str, Any] = {
         "centroid": 0.5 * (assembly.end1 + assembly.end2)[joint],
         "weight": np.zeros(k),
-        "fixed": never,
-        **dict.fromkeys(("dead", "live", "support_motion"), nothing),
+        "fixed": np.zeros(k, dtype=bool),
+        **dict.fromkeys(("dead", "live", "support_motion"), np.zeros((k, 3))),
     }
-    of_joints: dict[str, Any] = {
-        "block_a": layer,
-        "end1": limits.end1,
-        "end2": limits.end2,
-        "face1": limits.end1,
-        "face2": limits.end2,
-        "normal": assembly.normal[joint],
-        "friction": limits.friction,
-        "dilatancy": limits.dilatancy,
-        "constant": limits.constant,
-        "crushing": np.full(k, np.inf),
-        "brittle": never,
-        "bar_stiffness": np.zeros(k),
-    }
-    arrays: dict[str, Any] = {
-        name: np.concatenate([getattr(assembly, name), more]) for name, more in (of_blocks | of_joints).items()
-    }
-    return replace(
+    arrays: dict[str, Any] = {name: np.concatenate([getattr(assembly, name), more]) for name, more in of_blocks.items()}
+    wall = replace(
         assembly,
         block_ids=assembly.block_ids + tuple(f"{assembly.block_ids[like[i]]} (limit {i + 1})" for i in range(k)),
         polygons=assembly.polygons + tuple(assembly.polygons[block] for block in like),
-        joint=assembly.joint + tuple(assembly.joint[p] for p in joint),
-        block_b=np.concatenate([beyond, second]),
+        block_b=beyond,
         **arrays,
+    )
+    return wall.with_further_joints(
+        tuple(assembly.joint[p] for p in joint),
+        block_a=layer,
+        block_b=second,
+        end1=limits.end1,
+        end2=limits.end2,
+        face1=limits.end1,
+        face2=limits.end2,
+        normal=assembly.normal[joint],
+        friction=limits.friction,
+        dilatancy=limits.dilatancy,
+        constant=limits.constant,
     )
 
 

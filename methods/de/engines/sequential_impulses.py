@@ -32,7 +32,7 @@ from methods.numerics.compiled import compiled
 from methods.numerics.joint_loops import shear_limit, shear_within
 
 
-class _Rows(NamedTuple):
+class Rows(NamedTuple):
     """The contact points in the order of the sweeps: k = 2m of them, two an interface.
 
     Attributes:
@@ -103,7 +103,7 @@ class SequentialImpulses:
             result[i] = mass[i], mass[i], inertia
         return result
 
-    def _contact_points(self, joints: IntArray) -> _Rows:
+    def _contact_points(self, joints: IntArray) -> Rows:
         """The rows of interfaces (m,) in this order, level by level; notes each row's number among the points."""
         wall = self.assembly
         body = np.full(wall.n_blocks, len(self._blocks))
@@ -132,8 +132,8 @@ class SequentialImpulses:
         strength = law.least_normal[joints].ravel(), np.repeat(0.5 * ends, 2, axis=0)
         by_level = np.argsort(_levels(first, second, len(self._blocks)), kind="stable")
         self._points = (2 * np.repeat(joints, 2) + np.tile([0, 1], len(joints)))[by_level]
-        given = _Rows(first, second, normal, arms, across, along, friction, dilatancy, *strength)
-        return _Rows._make(part[by_level] for part in given)
+        given = Rows(first, second, normal, arms, across, along, friction, dilatancy, *strength)
+        return Rows._make(part[by_level] for part in given)
 
     def load(self, multiplier: float) -> None:
         """Put dead + multiplier x live on the blocks from now on."""
@@ -204,7 +204,7 @@ def _levels(first: IntArray, second: IntArray, ground: int) -> IntArray:
 def _step(
     velocity: FloatArray,
     impulses: FloatArray,
-    rows: _Rows,
+    rows: Rows,
     inverse: FloatArray,
     push: FloatArray,
     keep: float,

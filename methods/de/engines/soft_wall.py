@@ -48,7 +48,7 @@ class ExplicitTuning:
     steps_at_once: int = 20
 
 
-class _ElasticContacts(NamedTuple):
+class ElasticContacts(NamedTuple):
     """The contacts of rounded corners with faces, two an interface: 2m of them.
 
     Attributes:
@@ -79,7 +79,7 @@ class _ElasticContacts(NamedTuple):
     friction: FloatArray
 
 
-def _contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> _ElasticContacts:
+def _contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least_radius: float) -> ElasticContacts:
     """The contacts of a wall.
 
     A contact point that is set in from the end of its face is where a round of that radius begins; other corners are
@@ -91,7 +91,7 @@ def _contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least
         shear_ratio: stiffness along over stiffness across.
         least_radius: of a corner [length].
     """
-    rows: list[_ElasticContacts] = []
+    rows: list[ElasticContacts] = []
     small = SAME * assembly.length_scale
     for p in range(assembly.n_interfaces):
         faces = np.array([assembly.face1[p], assembly.face2[p]])
@@ -119,8 +119,8 @@ def _contacts_of(assembly: Assembly, stiffness: float, shear_ratio: float, least
                 "kt": shear_ratio * kn,
                 "friction": assembly.friction[p],
             }
-            rows.append(_ElasticContacts(**{name: np.asarray(value) for name, value in contact.items()}))
-    return _ElasticContacts(*(np.array(column) for column in zip(*rows, strict=True)))
+            rows.append(ElasticContacts(**{name: np.asarray(value) for name, value in contact.items()}))
+    return ElasticContacts(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
 def _extent(assembly: Assembly, block: int, p: int, end: FloatArray, along: FloatArray) -> tuple[float, float]:
@@ -281,7 +281,7 @@ def _advance(
     places: FloatArray,
     velocity: FloatArray,
     shear: FloatArray,
-    contacts: _ElasticContacts,
+    contacts: ElasticContacts,
     centroid: FloatArray,
     loads: FloatArray,
     mass: FloatArray,

@@ -220,10 +220,13 @@ def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -
         rows.append((a, b, one, two, normal, friction.get((a, b), least)))
     one, two = np.array([row[2] for row in rows]), np.array([row[3] for row in rows])
     level = np.abs((two - one)[:, 0]) > np.abs((two - one)[:, 1])
-    return replace(
-        assembly,
+    moved = replace(
+        assembly.with_joints(np.zeros(0, dtype=np.int64)),
         polygons=tuple(_moved_outline(assembly, i, places[i]) for i in range(assembly.n_blocks)),
         centroid=assembly.centroid + places[:, :2],
+    )
+    return moved.with_further_joints(
+        tuple("bed" if flat else "head" for flat in level),
         block_a=np.array([row[0] for row in rows], dtype=np.int64),
         block_b=np.array([row[1] for row in rows], dtype=np.int64),
         end1=one,
@@ -233,11 +236,6 @@ def with_contacts(assembly: Assembly, space: PymunkBlocks, places: FloatArray) -
         normal=np.array([row[4] for row in rows]),
         friction=np.array([row[5] for row in rows]),
         dilatancy=np.zeros(len(rows)),
-        constant=np.zeros((len(rows), 4)),
-        crushing=np.full(len(rows), np.inf),
-        brittle=np.zeros(len(rows), dtype=bool),
-        bar_stiffness=np.zeros(len(rows)),
-        joint=tuple("bed" if flat else "head" for flat in level),
     ), single
 
 
