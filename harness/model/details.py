@@ -55,7 +55,7 @@ class SweepOrder:
 
 
 @dataclass(frozen=True)
-class _Release:
+class Release:
     """The collapse that followed the release of a wall just above its multiplier.
 
     Attributes:
@@ -242,14 +242,14 @@ class AnswerDetails:
         return next((order for order in self.orders or () if order.name == (name or "")), SweepOrder())
 
     @property
-    def release(self) -> _Release | None:
+    def release(self) -> Release | None:
         """Of distinct elements: the collapse that followed."""
         found = self.data.get("release")
         if not isinstance(found, dict):
             return None
         frames = found.get("frames")
         listed = np.array(frames, dtype=float) if isinstance(frames, list) else None
-        return _Release(found.get("time_unit", ""), listed)
+        return Release(found.get("time_unit", ""), listed)
 
 
 def _float(value: Any) -> float | None:

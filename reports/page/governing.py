@@ -27,7 +27,7 @@ _CRITICAL = tuple(
 
 
 @dataclass(frozen=True)
-class _Way:
+class Way:
     """One load case or direction of the live load.
 
     Attributes:
@@ -62,7 +62,7 @@ class Governing:
     """
 
     item: CaseResults
-    ways: list[_Way]
+    ways: list[Way]
     unanswered: list[str]
     shown: Result | None
     reactions: list[SupportReaction]
@@ -137,12 +137,12 @@ def _name(item: CaseResults) -> str:
     return item.case.load_case or direction_in_words(item.case)
 
 
-def _way(item: CaseResults, *, governs: bool) -> _Way:
+def _way(item: CaseResults, *, governs: bool) -> Way:
     least = least_known(item)
     answers = dict.fromkeys(labels.FINDING[result.finding] for result in item.mains)
     value = ", ".join(answers) if least is None else f"{numbers.multiplier(least.multiplier)} ({least.method})"
     proved = "" if least is None else proof_of(item, least).label
-    return _Way(_name(item), value, proved, governs, _residual(item) if item.case.assembly.strong else "")
+    return Way(_name(item), value, proved, governs, _residual(item) if item.case.assembly.strong else "")
 
 
 def _residual(item: CaseResults) -> str:

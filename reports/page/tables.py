@@ -256,7 +256,7 @@ def overview_columns(run: ComparisonRun) -> list[Column]:
 
 
 @dataclass(frozen=True)
-class _Failure:
+class Failure:
     """Runs of one method that failed in the same way."""
 
     method: str
@@ -266,7 +266,7 @@ class _Failure:
     runs: list[RunRow]
 
 
-def failures(rows: Iterable[RunRow]) -> list[_Failure]:
+def failures(rows: Iterable[RunRow]) -> list[Failure]:
     """Failed and rejected runs, those of one method with the same sentence together, in the order they appear."""
     groups: dict[tuple[str, str, str, str], list[RunRow]] = {}
     for row in rows:
@@ -275,7 +275,7 @@ def failures(rows: Iterable[RunRow]) -> list[_Failure]:
         elif row.judged == "rejected":
             rejected = (row.result.method, "✗", "rejected by the judge", row.result.judge.sentence)
             groups.setdefault(rejected, []).append(row)
-    return [_Failure(*words_of, runs) for words_of, runs in groups.items()]
+    return [Failure(*words_of, runs) for words_of, runs in groups.items()]
 
 
 def findings(run: ComparisonRun) -> str:

@@ -50,7 +50,7 @@ class RowScaling:
 
 
 @dataclass(frozen=True, eq=False)
-class _DeadWork:
+class DeadWork:
     """The least -dead.u of mechanisms, and the contacts (m, 4) that must be at rest for the forces that prove it."""
 
     work: float
@@ -162,7 +162,7 @@ class ForceProgramme:
             (limits, np.where(tight[:, 2:].ravel(), limits, INFINITY)),
         )
 
-    def least_dead_work(self, still: BoolArray) -> _DeadWork | str:
+    def least_dead_work(self, still: BoolArray) -> DeadWork | str:
         """The least -dead.u of mechanisms with unit live work, at rest in contacts `still` (m, 4).
 
         Their slips lift by the joints' own dilatancy.
@@ -183,7 +183,7 @@ class ForceProgramme:
             return found
         return replace(alone, work=np.inf)
 
-    def _dead_work(self, still: BoolArray, dead: FloatArray, most_live: float) -> _DeadWork | str:
+    def _dead_work(self, still: BoolArray, dead: FloatArray, most_live: float) -> DeadWork | str:
         """The programme of `least_dead_work` beside another dead load and with a multiplier of at most so much."""
         m = self.problem.n_interfaces
         lower = np.where(still[:, :2], -INFINITY, 0.0)
@@ -204,7 +204,7 @@ class ForceProgramme:
             return solved
         first, second, shear = solved[0].value[: 3 * m].reshape(-1, 3).T
         needs = np.column_stack([first < 0.0, second < 0.0, shear < 0.0, shear > 0.0])
-        return _DeadWork(float(solved[0].value[-1]), needs | self.problem.dilates)
+        return DeadWork(float(solved[0].value[-1]), needs | self.problem.dilates)
 
     def _solved(
         self,
