@@ -15,9 +15,9 @@ from harness.engine import pipeline
 from harness.engine.executors import Executor, InProcess, LocalExecutor
 from harness.engine.load_case_search import made_together
 from harness.engine.plan import check_methods, plan_case
-from harness.engine.regression import violations
 from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
+from harness.engine.verdict import violations
 from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError

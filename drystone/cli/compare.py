@@ -42,12 +42,12 @@ from drystone.cli.studies import curve_of_shipped
 from drystone.comparing import compare as make_comparison
 from drystone.comparing import compared, recalled
 from drystone.walls import Wall
-from harness.engine import regression
 from harness.engine.executors import LocalExecutor
 from harness.engine.isolate import preload_methods
 from harness.engine.plan import check_methods, find_cases, plan_case
 from harness.engine.run import Limits
 from harness.engine.store import open_store
+from harness.engine.verdict import violations
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 from harness.model.library import library
@@ -142,7 +142,7 @@ def compare(
         print_json(terminal.comparison_json(made, written))
     else:
         terminal.print_comparison(made, written)
-    sys.exit(1 if regression.violations(made) else 0)
+    sys.exit(1 if violations(made) else 0)
 
 
 def _command_line() -> str:

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from harness.engine.pipeline import Progress
-from harness.engine.regression import violations
 from harness.engine.run import Run
+from harness.engine.verdict import violations
 from harness.model.bar_forces import BARS, bar_forces_of
 from harness.model.case import Case
 from harness.model.columns import PRINTED, ResultColumn, ResultRow

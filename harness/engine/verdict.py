@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from harness.model.case import Reference, ReferenceType
-from harness.model.comparison import CaseResults, Gate
+from harness.model.comparison import CaseResults, ComparisonRun, Gate
 from harness.model.details import AnswerDetails
 from harness.model.displaced import DisplacedState
 from harness.model.method import Finding, Status
@@ -245,3 +245,24 @@ def _slips(results: CaseResults, result: Result) -> bool:
     wall, motion = results.case.assembly, np.asarray(result.mechanism, dtype=float)
     rates = (wall.kinematic_matrix @ motion[wall.free].ravel()).reshape(-1, 3)
     return bool(np.abs(rates[:, 2]).max(initial=0.0) > _BOUND_TOLERANCE * np.abs(rates).max(initial=0.0))
+
+
+def violations(compared: ComparisonRun) -> list[str]:
+    """Sentences about checked references and statements of theory that are not met, and about rejected answers.
+
+    A comparison in which no run ended with an answer says so too: it shows nothing.
+    """
+    found = []
+    if not any(result.status is Status.OK for case in compared.cases for result in case.results):
+        found.append("no run ended with an answer")
+    for case in compared.cases:
+        for result in case.results:
+            if result.judge.accepted is False:
+                found.append(f"{case.case.id}, {result.method}: the judge rejects the answer: {result.judge.sentence}")
+            for comparison in result.comparisons:
+                if comparison.gate and comparison.verdict not in (Verdict.AGREES, Verdict.NOT_TESTED):
+                    found.append(f"{case.case.id}, {result.method}: {comparison.reference}: {comparison.sentence}")
+        for gate in case.gates:
+            if gate.passed is False:
+                found.append(f"{case.case.id}: {gate.name}: {gate.statement}, but {gate.sentence}")
+    return found

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.model.assembly import Assembly, BoolArray, FloatArray, IntArray
+from harness.model.assembly import Assembly, FloatArray, IntArray
 from harness.model.bars import with_bar_forces, with_bars_as_joints
 from harness.model.components import analysed_apart, joints_of
 from harness.model.deadline import STOPPED, best_so_far
@@ -25,9 +25,8 @@ from methods.fe.histories import SENTENCES, HistoryTuning
 from methods.fe.settings import GapSpringsSettings
 from methods.numerics.claims import at_limit, with_proof
 from methods.numerics.statics import admissible_forces, dilatant_mechanism, greatest_multiplier
-from methods.springs.model.breaking import joints_at_strength
+from methods.springs.model.breaking import broken_model, joints_at_strength
 from methods.springs.model.factor import SingularTangent, make_factor
-from methods.springs.model.points import GapSettings
 from methods.springs.model.wall_model import WallModel, build_model, load_scale
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.load_path import LoadPath, follow
@@ -93,7 +92,7 @@ class _BrittlePath:
         mask = np.zeros(self.wall.n_interfaces, dtype=bool)
         mask[joints] = True
         rest = self.rest
-        after = _broken_model(self.model, mask, rest.u, rest.history, rest.state, self.settings)
+        after = broken_model(self.model, mask, rest.u, rest.history, rest.state, self.settings)
         found = equilibrium(after, make_factor(after), rest.u, rest.multiplier, after.history, commits=True)
         if not found.found:
             return False
@@ -316,30 +315,3 @@ def _named(wall: Assembly, joints: list[int]) -> str:
     """A few joints by their blocks."""
     pairs = [f"{wall.block_ids[wall.block_a[p]]}-{wall.block_ids[wall.block_b[p]]}" for p in joints]
     return f"brittle joint{'s' if len(pairs) > 1 else ''} {first_few(pairs, 4)}"
-
-
-def _broken_model(
-    model: WallModel, broken: BoolArray, u: FloatArray, history: FloatArray, state: IntArray, settings: GapSettings
-) -> WallModel:
-    """The wall whose joints `broken` (m,) have just lost their strength, with the friction history that goes on.
-
-    Its displacements are those of before. Springs of other joints carry what they did. Those of a broken joint carry
-    its compression, and its shear in proportion to that; where friction does not bear so much they slip.
-
-    Args:
-        model: the wall before; u: (N,) displacements; history, state: (P,) of its gap points.
-        broken: (m,) joints that break now.
-        settings: of the model.
-    """
-    after = build_model(model.assembly.with_broken(broken), settings)
-    m, contacts = model.assembly.n_interfaces, model.n_contacts
-    normal, shear = model.forces(u, history, state)
-    borne = -model.end_forces(normal, shear)[:, 2] / model.force
-    opening, slip = after.strains(u)
-    pressed = np.maximum(-after.kn * opening, 0.0)[:contacts]
-    interface = after.interface[:contacts]
-    total = np.bincount(interface, pressed, m)
-    share = pressed / np.where(total > 0.0, total, 1.0)[interface]
-    own = np.where(broken[interface], borne[interface] * share - (after.kt * slip)[:contacts], history[:contacts])
-    glued = history[contacts:][~broken[model.cohesive]]
-    return replace(after, history=np.concatenate([own, glued]), options=model.options, deadline=model.deadline)

@@ -18,10 +18,9 @@ import pytest
 from harness.engine.compare import comparison_run, recall, remember
 from harness.engine.pipeline import execute
 from harness.engine.plan import plan_case
-from harness.engine.regression import violations
 from harness.engine.run import Limits, Run
 from harness.engine.store import Store, open_store
-from harness.engine.verdict import compare, theory_gates
+from harness.engine.verdict import compare, theory_gates, violations
 from harness.model.case import Reference
 from harness.model.comparison import CaseResults, ComparisonRun
 from harness.model.displaced import DisplacedState

@@ -16,8 +16,8 @@ from drystone import certificates
 from drystone.certificates import is_below, with_certificates
 from drystone.cli import terminal
 from harness.engine.compare import recall
-from harness.engine.regression import violations
 from harness.engine.store import open_store
+from harness.engine.verdict import violations
 from harness.model.case import read_case, shipped_cases
 from harness.model.comparison import Certified, ComparisonRun
 from reports import appendix

@@ -7,11 +7,14 @@ what compression and shear the joint bore before, as far as friction allows. The
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from harness.model.assembly import FloatArray, IntArray
+from harness.model.assembly import BoolArray, FloatArray, IntArray
 from methods.springs.model.gap_law import gap_forces
-from methods.springs.model.wall_model import WallModel
+from methods.springs.model.points import GapSettings
+from methods.springs.model.wall_model import WallModel, build_model
 
 
 def joints_at_strength(
@@ -33,3 +36,30 @@ def joints_at_strength(
     opens, slips = slacks[:, :2].min(axis=1) <= within, slacks[:, 2:].min(axis=1) <= within
     has_shear_strength = slacks[:, 2:].max(axis=1) > within
     return np.flatnonzero(assembly.brittle & (opens | (slips & has_shear_strength)))
+
+
+def broken_model(
+    model: WallModel, broken: BoolArray, u: FloatArray, history: FloatArray, state: IntArray, settings: GapSettings
+) -> WallModel:
+    """The wall whose joints `broken` (m,) have just lost their strength, with the friction history that goes on.
+
+    Its displacements are those of before. Springs of other joints carry what they did. Those of a broken joint carry
+    its compression, and its shear in proportion to that; where friction does not bear so much they slip.
+
+    Args:
+        model: the wall before; u: (N,) displacements; history, state: (P,) of its gap points.
+        broken: (m,) joints that break now.
+        settings: of the model.
+    """
+    after = build_model(model.assembly.with_broken(broken), settings)
+    m, contacts = model.assembly.n_interfaces, model.n_contacts
+    normal, shear = model.forces(u, history, state)
+    borne = -model.end_forces(normal, shear)[:, 2] / model.force
+    opening, slip = after.strains(u)
+    pressed = np.maximum(-after.kn * opening, 0.0)[:contacts]
+    interface = after.interface[:contacts]
+    total = np.bincount(interface, pressed, m)
+    share = pressed / np.where(total > 0.0, total, 1.0)[interface]
+    own = np.where(broken[interface], borne[interface] * share - (after.kt * slip)[:contacts], history[:contacts])
+    glued = history[contacts:][~broken[model.cohesive]]
+    return replace(after, history=np.concatenate([own, glued]), options=model.options, deadline=model.deadline)
