@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from drystone.place import in_the_way
+from drystone import in_the_way
 
 
 def main() -> None:

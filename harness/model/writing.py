@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -80,26 +77,6 @@ def write_whole(path: Path, content: str | bytes) -> None:
     """
     with replacing(path) as draft:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
-
-
-def csv_text(heads: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """A CSV file with texts quoted and numbers not, so that a reader does not turn an id of digits into a number.
-
-    None is an empty cell, true and false are words, and lists and objects are JSON.
-    """
-    stream = io.StringIO()
-    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
-    writer.writerow(list(heads))
-    writer.writerows([_field(value) for value in row] for row in rows)
-    return stream.getvalue()
-
-
-def _field(value: Any) -> Any:
-    if isinstance(value, list | dict):
-        return json.dumps(value)
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return "" if value is None else cell(value)
 
 
 def cell(value: Any) -> Any:

@@ -350,3 +350,22 @@ def _times(a: FloatArray, x: FloatArray, out: FloatArray) -> None:
             entry = a[i, k]
             for c in range(COLUMNS):
                 out[i, c] += entry * x[k, c]
+
+
+@compiled
+def add_congruences(slot: IntArray, rows: FloatArray, middle: FloatArray, values: FloatArray) -> None:
+    """Add the products rows' middle rows (6, 6) of every interface to the values at its slots.
+
+    Args:
+        slot: (m, 36) places of the products; rows: (m, 3, 6); middle: (m, 3, 3); values: (n_values,).
+    """
+    half = np.empty((3, 6))
+    for p in range(len(rows)):
+        for k in range(3):
+            for j in range(6):
+                half[k, j] = middle[p, k, 0] * rows[p, 0, j] + middle[p, k, 1] * rows[p, 1, j]
+                half[k, j] += middle[p, k, 2] * rows[p, 2, j]
+        for i in range(6):
+            for j in range(6):
+                total = rows[p, 0, i] * half[0, j] + rows[p, 1, i] * half[1, j] + rows[p, 2, i] * half[2, j]
+                values[slot[p, 6 * i + j]] += total

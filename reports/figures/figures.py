@@ -5,7 +5,6 @@ Widths are those of a journal: one column of 88 mm, two of 180 mm. The same inpu
 
 from __future__ import annotations
 
-import io
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -246,12 +245,3 @@ def _panel_title(case: Case, result: Result, what: str) -> str:
         found = shapes.thrusts(case.assembly, np.asarray(result.forces, dtype=float), thrust_lines.SMALLEST)
         what = "line of thrust" if thrust_lines.has_line_of_thrust(case.assembly, found) else "flow of forces"
     return f"{result.method}, {value_in_words(result)}: {what}"
-
-
-def svg(figure: Figure) -> str:
-    """A figure as an SVG element."""
-    with style():
-        drawn = io.StringIO()
-        figure.savefig(drawn, format="svg", metadata={"Date": None, "Creator": "Drystone"})
-    text = drawn.getvalue()
-    return text[text.index("<svg") :]

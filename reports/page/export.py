@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import itertools
 import json
 import re
@@ -20,7 +22,7 @@ from harness.model.proof import proof_of
 from harness.model.result import Result
 from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import Row, TableColumn, in_units, types, units, values
-from harness.model.writing import csv_text, write_whole
+from harness.model.writing import cell, write_whole
 from reports.charts import charts
 from reports.charts.charts import Chart
 from reports.charts.curves import curves
@@ -149,13 +151,13 @@ def _json(data: Any) -> bytes:
 
 def _csv(table: pd.DataFrame) -> str:
     known = table.astype(object)
-    return csv_text(table.columns, known.where(known.notna(), None).to_numpy().tolist())
+    return _csv_text(table.columns, known.where(known.notna(), None).to_numpy().tolist())
 
 
 def _joints_csv(run: ComparisonRun) -> str:
     """The joints of all answers, without a frame: they are many."""
     rows = (row for item in run.cases for result in item.results for row in joint_rows(item.case, result))
-    return csv_text([column.name for column in ANSWERED], ([column.value(row) for column in ANSWERED] for row in rows))
+    return _csv_text([column.name for column in ANSWERED], ([column.value(row) for column in ANSWERED] for row in rows))
 
 
 def _bars_csv(run: ComparisonRun) -> str:
@@ -166,7 +168,7 @@ def _bars_csv(run: ComparisonRun) -> str:
         for result in item.results
         for bar in bar_forces_of(item.case, result)
     )
-    return csv_text(["case", "method", *(column.name for column in BARS), "units"], rows)
+    return _csv_text(["case", "method", *(column.name for column in BARS), "units"], rows)
 
 
 def _comparison_frame(run: ComparisonRun) -> pd.DataFrame:
@@ -215,4 +217,24 @@ def _csv_of(chart: Chart) -> str:
         columns = (series.x, series.y, series.low, series.high, *((series.curve,) if fitted else ()))
         rows += [(series.name, *values) for values in itertools.zip_longest(*columns)]
     rows += [(name, None, value, None, None) for name, value in chart.levels]
-    return csv_text(("series", chart.x_label, chart.y_label, "low", "high", *fitted), rows)
+    return _csv_text(("series", chart.x_label, chart.y_label, "low", "high", *fitted), rows)
+
+
+def _csv_text(heads: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A CSV file with texts quoted and numbers not, so that a reader does not turn an id of digits into a number.
+
+    None is an empty cell, true and false are words, and lists and objects are JSON.
+    """
+    stream = io.StringIO()
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
+    writer.writerow(list(heads))
+    writer.writerows([_field(value) for value in row] for row in rows)
+    return stream.getvalue()
+
+
+def _field(value: Any) -> Any:
+    if isinstance(value, list | dict):
+        return json.dumps(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return "" if value is None else cell(value)

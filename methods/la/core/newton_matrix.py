@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from harness.model.assembly import FloatArray, IntArray
 from harness.model.groups import groups_of
 from methods.la.core.problem import Problem
-from methods.numerics.compiled import compiled
 from methods.numerics.failures import SingularMatrix, sparse_lu
 
 if TYPE_CHECKING:
@@ -189,8 +188,10 @@ class NewtonMatrix:
     def _assembled(self, flexibility: FloatArray) -> FloatArray:
         """The entries of K for flexibilities (m, 3, 3), where they stand in the factor."""
         if self.large:
+            from methods.numerics.block_kernels import add_congruences
+
             values = np.zeros(self._n_values)
-            _add_congruences(self._slot, self.rows, flexibility, values)
+            add_congruences(self._slot, self.rows, flexibility, values)
             return values
         products = np.matmul(self.rows.transpose(0, 2, 1), np.matmul(flexibility, self.rows)).ravel()
         return cast(FloatArray, np.bincount(self._slot, products[self._used], self._n_values))
@@ -224,22 +225,3 @@ def _exchanges(order: IntArray) -> int:
     """How many exchanges of two make this permutation: its length less its number of cycles."""
     n = len(order)
     return n - len(np.unique(groups_of(n, np.arange(n), order)))
-
-
-@compiled
-def _add_congruences(slot: IntArray, rows: FloatArray, middle: FloatArray, values: FloatArray) -> None:
-    """Add the products rows' middle rows (6, 6) of every interface to the values at its slots.
-
-    Args:
-        slot: (m, 36) places of the products; rows: (m, 3, 6); middle: (m, 3, 3); values: (n_values,).
-    """
-    half = np.empty((3, 6))
-    for p in range(len(rows)):
-        for k in range(3):
-            for j in range(6):
-                half[k, j] = middle[p, k, 0] * rows[p, 0, j] + middle[p, k, 1] * rows[p, 1, j]
-                half[k, j] += middle[p, k, 2] * rows[p, 2, j]
-        for i in range(6):
-            for j in range(6):
-                total = rows[p, 0, i] * half[0, j] + rows[p, 1, i] * half[1, j] + rows[p, 2, i] * half[2, j]
-                values[slot[p, 6 * i + j]] += total

@@ -15,18 +15,6 @@ from methods.springs.rest.newton import Equilibrium
 
 
 @dataclass(frozen=True)
-class Springs:
-    """How paths of springs are followed.
-
-    Attributes:
-        ratios: kt / kn of further paths from the same kind of forces, in turn; the first is that of `fe`, whose falls
-            under the dead load are named beside the answer.
-    """
-
-    ratios: tuple[float, ...] = (GapSettings().stiffness_ratio, 5.0, 50.0)
-
-
-@dataclass(frozen=True)
 class Gravity:
     """What the dead load does to a wall with springs in its joints and no self-stress in them."""
 
@@ -34,6 +22,13 @@ class Gravity:
     model: WallModel
     factor: Factor
     equilibrium: Equilibrium
+
+    @classmethod
+    def of(cls, problem: Problem, ratio: float) -> Gravity:
+        """The springs under the dead load of a wall that stands by statics, with kt/kn = ratio."""
+        model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
+        factor = make_factor(model)
+        return cls(problem, model, factor, gravity_state(model, factor))
 
     @property
     def falling(self) -> list[str]:
@@ -48,10 +43,3 @@ class Gravity:
         if not found.found:
             return None
         return model.end_forces(*model.forces(found.u, found.history, found.state)) / self.problem.unit_force
-
-
-def gravity_of(problem: Problem, ratio: float) -> Gravity:
-    """The springs under the dead load of a wall that stands by statics, with kt/kn = ratio."""
-    model = build_model(problem.assembly, GapSettings(stiffness_ratio=ratio))
-    factor = make_factor(model)
-    return Gravity(problem, model, factor, gravity_state(model, factor))

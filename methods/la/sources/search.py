@@ -27,8 +27,9 @@ from methods.la.interior.interior_starting_point import phase_one_forces
 from methods.la.interior.newton_step import Point
 from methods.la.interior.path_programmes import Exactness, cheapest_mechanism, exact_state, state_of_mechanism
 from methods.la.sources.budget import Budget, SearchLimits
-from methods.la.sources.gravity import Gravity, Springs, gravity_of
+from methods.la.sources.gravity import Gravity
 from methods.la.sources.record import LEAST_IMPROVEMENT, Record
+from methods.springs.model.points import GapSettings
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,9 @@ class Choices:
         widest_gap: relative gap at the end of a path above which its slacks tell no mechanism.
         central: accuracy of the central path: its end only tells the mechanism.
         nearly_zero, small: scaled slacks that count as zero when a mechanism is sought near them, first and then.
-        exactness: of states that are read from paths; associated: how that programme ends; springs: paths of springs.
+        exactness: of states that are read from paths; associated: how that programme ends.
+        spring_ratios: kt / kn of paths of springs from the same kind of forces, in turn; the first is that of `fe`,
+            whose falls under the dead load are named beside the answer.
     """
 
     vertices_up_to: int = 1000
@@ -58,7 +61,7 @@ class Choices:
     small: float = 1e-3
     exactness: Exactness = Exactness()
     associated: EndOfPath = EndOfPath()
-    springs: Springs = Springs()
+    spring_ratios: tuple[float, ...] = (GapSettings().stiffness_ratio, 5.0, 50.0)
 
 
 class Search:
@@ -117,7 +120,7 @@ class Search:
     @cached_property
     def gravity(self) -> Gravity:
         """What the dead load does to the wall with springs in its joints and no self-stress in them."""
-        return gravity_of(self.problem, self.choices.springs.ratios[0])
+        return Gravity.of(self.problem, self.choices.spring_ratios[0])
 
     @cached_property
     def central_forces(self) -> FloatArray | None:

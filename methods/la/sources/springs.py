@@ -29,7 +29,7 @@ from methods.la.core.state import CollapseState, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
 from methods.la.sources.arcs import ArcPaths, RestoredFriction
 from methods.la.sources.friction_continuation import with_reduced_friction
-from methods.la.sources.gravity import Gravity, gravity_of
+from methods.la.sources.gravity import Gravity
 from methods.la.sources.record import LEAST_IMPROVEMENT
 from methods.la.sources.search import Search
 from methods.springs.model.factor import SingularTangent, make_factor
@@ -82,7 +82,7 @@ class CommittedHistories:
     def _from_gravity(self, search: Search, ratio: float) -> _PathStart | None:
         """The path with kt/kn = ratio; None without equilibrium, or where no multiplier is known to measure commits."""
         least = _scale(search)
-        gravity = gravity_of(search.problem, ratio)
+        gravity = Gravity.of(search.problem, ratio)
         return _from_gravity(search, gravity, least, self.share * least) if 0.0 < least < np.inf else None
 
 
@@ -172,7 +172,7 @@ class LowPrestress:
             forces += own * own_forces
         if central is not None:
             forces += middle * central
-        ratios = search.choices.springs.ratios
+        ratios = search.choices.spring_ratios
         return _from_forces(search, forces, 0.0, ratios[k % len(ratios)])
 
 
@@ -204,7 +204,7 @@ class ShiftedAssociated:
         if not safe.converged:
             return None
         forces = guide.forces_of_slacks(safe.point.slack)
-        return _from_forces(search, forces, safe.point.multiplier, search.choices.springs.ratios[0])
+        return _from_forces(search, forces, safe.point.multiplier, search.choices.spring_ratios[0])
 
 
 @dataclass(frozen=True)
@@ -235,7 +235,7 @@ class AnalyticCentre:
             yield from (state for _, state in _ends(search, self._starts(search)))
 
     def _starts(self, search: Search) -> Iterator[Start]:
-        first, *others = search.choices.springs.ratios
+        first, *others = search.choices.spring_ratios
         yield partial(_from_central_forces, search, first)
         if search.problem.n_interfaces > self.gravity_above:
             yield from self.committed.starts(search)
