@@ -21,7 +21,6 @@ from harness.conformance.walls import (
     VIEWED,
     WITH_FEATURES,
     ClosedForm,
-    assembly_of,
     odd_names,
 )
 from harness.engine.isolate import run_isolated
@@ -31,11 +30,13 @@ from harness.engine.symmetry import VIEWS
 from harness.engine.worker import Task
 from harness.model.answer_check import AnswerFault
 from harness.model.assembly import Assembly
+from harness.model.build import build
 from harness.model.errors import InputError
 from harness.model.foreign.program_method import ProgramMethod
 from harness.model.method import Finding, Method, Status
 from harness.model.method_registry import method_names
 from harness.model.result import Judgement, Result
+from harness.model.wall import Wall
 
 _WIDEST_BRACKET = 0.01
 """Relative width of the widest bracket around a closed form with which a method conforms."""
@@ -145,7 +146,7 @@ def _answer(method: Method, wall: Assembly) -> tuple[Result, Judgement]:
 
 def _closed_form(form: ClosedForm) -> Callable[[Method], str]:
     def check(method: Method) -> str:
-        return _fault(*_answer(method, assembly_of(form.wall, form.name)), form.multiplier, _slack_of(method))
+        return _fault(*_answer(method, _assembly_of(form.wall, form.name)), form.multiplier, _slack_of(method))
 
     return check
 
@@ -174,7 +175,7 @@ def _taken(method: Method) -> tuple[Assembly, Result]:
     """
     for name, wall in VIEWED.items():
         try:
-            return assembly_of(wall, name), _answer(method, assembly_of(wall, name))[0]
+            return _assembly_of(wall, name), _answer(method, _assembly_of(wall, name))[0]
         except _Refused as error:
             reason = str(error)
     raise _Refused(reason)
@@ -192,7 +193,7 @@ def _view(name: str) -> Callable[[Method], str]:
 
 def _ending(wall: dict[str, Any], finding: Finding) -> Callable[[Method], str]:
     def check(method: Method) -> str:
-        result, judgement = _answer(method, assembly_of(wall))
+        result, judgement = _answer(method, _assembly_of(wall))
         if result.finding is not finding:
             return f"says {result.finding} instead of {finding}: {result.sentence}"
         if result.multiplier is not None:
@@ -211,7 +212,7 @@ def _repeats(method: Method) -> str:
 
 
 def _leaves_the_wall(method: Method) -> str:
-    wall = assembly_of(CLOSED_FORMS[0].wall)
+    wall = _assembly_of(CLOSED_FORMS[0].wall)
     given = wall.copied()
     method.solve(given, method.Settings())
     arrays = [name for name, value in vars(wall).items() if isinstance(value, np.ndarray)]
@@ -220,7 +221,7 @@ def _leaves_the_wall(method: Method) -> str:
 
 
 def _takes_odd_names(method: Method) -> str:
-    return _fault(*_answer(method, assembly_of(odd_names())), 0.3, _slack_of(method))
+    return _fault(*_answer(method, _assembly_of(odd_names())), 0.3, _slack_of(method))
 
 
 def _isolated(method: Method, wall: dict[str, Any], seconds: float, mebibytes: int) -> Result:
@@ -232,7 +233,7 @@ def _isolated(method: Method, wall: dict[str, Any], seconds: float, mebibytes: i
     program = method.program if isinstance(method, ProgramMethod) else None
     if program is None and method.name not in method_names():
         raise _NotTested("an object runs in this process only; give the method an entry point")
-    task = Task(method.name, assembly_of(wall), {}, seconds, mebibytes * 2**20, program=program)
+    task = Task(method.name, _assembly_of(wall), {}, seconds, mebibytes * 2**20, program=program)
     return run_isolated(task, "conformance").result
 
 
@@ -254,7 +255,7 @@ def _keeps_to_limits(seconds: float, mebibytes: int, allowed: Sequence[Status]) 
 
 def _same_in_a_process_of_its_own(method: Method) -> str:
     form = CLOSED_FORMS[0]
-    here, _ = _answer(method, assembly_of(form.wall))
+    here, _ = _answer(method, _assembly_of(form.wall))
     apart = _isolated(method, form.wall, 60.0, 4096)
     if apart.status is Status.OK and apart.multiplier == here.multiplier:
         return ""
@@ -312,3 +313,8 @@ def conforms(rows: Sequence[CheckFound]) -> bool:
     return all(row.outcome is not Outcome.FAILS for row in rows) and any(
         row.outcome is Outcome.CONFORMS and row.group == "closed forms" for row in rows
     )
+
+
+def _assembly_of(wall: dict[str, Any], name: str = "wall") -> Assembly:
+    """The assembly of a wall given as JSON data."""
+    return build(Wall.model_validate(wall), name).assembly

@@ -5,10 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from harness.model.assembly import Assembly
-from harness.model.build import build
-from harness.model.wall import Wall
-
 
 @dataclass(frozen=True)
 class ClosedForm:
@@ -72,8 +68,3 @@ def odd_names() -> dict[str, Any]:
     live = {"live": {"body": [{"per_weight": [1, 0]}]}}
     blocks = [block(k) for k in range(4)]
     return {"format": "wall/1", "unit_weight": 20.0, "friction": 0.3, "blocks": blocks, "loads": live}
-
-
-def assembly_of(wall: dict[str, Any], name: str = "wall") -> Assembly:
-    """The assembly of a wall given as JSON data."""
-    return build(Wall.model_validate(wall), name).assembly

@@ -76,7 +76,7 @@ class Contacts:
 
 
 @dataclass(frozen=True)
-class Edges:
+class _Edges:
     """Directed edges of all blocks, and their owners. `before` is the edge that ends where each begins."""
 
     owner: IntArray
@@ -168,7 +168,7 @@ class Edges:
         return np.asarray(self.first[k] + share[:, None] * vector)
 
 
-def edges_of(polygons: Sequence[FloatArray]) -> Edges:
+def edges_of(polygons: Sequence[FloatArray]) -> _Edges:
     """The edges of polygons (k, 2), counter-clockwise each, those round holes clockwise."""
     parts = [rings_of(polygon) for polygon in polygons]
     rings = [ring for part in parts for ring in part]
@@ -176,7 +176,7 @@ def edges_of(polygons: Sequence[FloatArray]) -> Edges:
     owner = np.repeat(np.repeat(np.arange(len(parts)), [len(part) for part in parts]), sizes)
     before = np.arange(len(owner)) - 1
     before[np.cumsum(sizes) - sizes] += sizes
-    return Edges(owner, np.concatenate(rings), np.concatenate([following(ring) for ring in rings]), before)
+    return _Edges(owner, np.concatenate(rings), np.concatenate([following(ring) for ring in rings]), before)
 
 
 def find_contacts(polygons: Sequence[FloatArray], fixed: BoolArray, limits: JointLimits) -> Contacts:
@@ -281,7 +281,7 @@ def _meeting(kept: list[int], starts: FloatArray, ends: FloatArray, k: int, tole
     return [int(kept) for kept in index[apart <= tolerance * (1.0 + 1e-9)][::-1]]
 
 
-def _corner_pairs(edges: Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:
+def _corner_pairs(edges: _Edges, fixed: BoolArray, a: IntArray, b: IntArray, tolerance: float) -> IntArray:
     """Pairs (k, 2) of blocks without a contact of which one has a vertex within the tolerance of the other."""
     vertex, edge = edges.near(tolerance)
     i, j = np.sort([edges.owner[vertex], edges.owner[edge]], axis=0)

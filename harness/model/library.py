@@ -15,7 +15,7 @@ from harness.model.reading import validate
 Words = TypeVar("Words", bound=Strict)
 
 
-class DefaultMethods(Strict):
+class _DefaultMethods(Strict):
     """Names of the methods that are asked where nobody names any."""
 
     compare: Annotated[tuple[str, ...], Field(min_length=1, description="of a comparison, besides those of references")]
@@ -28,7 +28,7 @@ class Library(Strict):
     """The content of `library.toml`."""
 
     families: dict[str, str] = Field(description="titles of families, in the order of tables")
-    methods: DefaultMethods
+    methods: _DefaultMethods
     settings: dict[str, str] = Field(description="METHOD.NAME of settings that studies call by a short name")
 
     def family_title(self, family: str, method: str) -> str:

@@ -12,7 +12,6 @@ from harness.model.breakpoints import CHANGE, CHANGES, JOINT, NO_JOINT
 from harness.model.errors import first_few
 from harness.model.load_steps import STATES, LoadSteps
 from harness.model.method import Answer, Finding, Status
-from methods.fe.convex_steps import ConvexResult
 from methods.fe.histories import HistoryResult
 from methods.springs.model.gap_law import OPEN, SLIP_MINUS, SLIP_PLUS, STICK, gap_forces
 from methods.springs.model.wall_model import WallModel
@@ -202,56 +201,6 @@ def _breakpoints(model: WallModel, changes: list[tuple[int, int, int] | None]) -
             what = "opens" if new == OPEN else "closes" if old == OPEN else "sticks" if new == STICK else "slides"
             found[k] = joint, CHANGES.index(what)
     return {JOINT: [float(joint) for joint, _ in found], CHANGE: [float(what) for _, what in found]}
-
-
-def bracket_answer(result: ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:
-    """The answer of steps that only know between which two of them the wall lost its equilibrium.
-
-    Args:
-        forces: end forces (m, 3) at `result.at`.
-    """
-    lower, upper = result.lower, result.upper
-    path = {"multiplier": list(result.record.multiplier)}
-    if upper is None:
-        return Answer(
-            Status.OK,
-            Finding.UNBOUNDED,
-            "every step of the live load found equilibrium",
-            forces=forces,
-            forces_multiplier=result.at,
-            iterations=result.programmes,
-            path=path,
-            details=details | {"path_status": "unbounded"},
-        )
-    if not (result.settles and result.fine):
-        share = f"{result.repeated:g}"
-        doubt = (
-            f"friction limits that converge to {share} of the loads are not accurate enough for so small a multiplier"
-            if result.settles
-            else f"at {upper:.6g} the friction limits do not converge, which is no proof of collapse"
-        )
-        return Answer(
-            Status.NOT_CONVERGED,
-            Finding.NONE,
-            f"equilibrium is found at {lower:.6g} times the live load; {doubt}",
-            iterations=result.programmes,
-            path=path,
-            details=details | {"path_status": "not_converged", "settled_at": lower},
-        )
-    return Answer(
-        Status.OK,
-        Finding.COLLAPSES,
-        f"equilibrium is found at {lower:.6g} times the live load and none at {upper:.6g}",
-        multiplier=0.5 * (lower + upper),
-        bracket=(lower, upper),
-        bracket_meaning="last step with equilibrium, first step without",
-        forces=forces,
-        forces_multiplier=result.at,
-        flow="approximate",
-        iterations=result.programmes,
-        path=path,
-        details=details | {"path_status": "bracket"},
-    )
 
 
 def single_state_answer(

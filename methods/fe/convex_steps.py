@@ -20,6 +20,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from harness.model.assembly import FloatArray
+from harness.model.method import Answer, Finding, Status
 from methods.numerics.vectors import largest
 from methods.springs.model.wall_model import WallModel, load_scale
 from methods.springs.path.path_record import PathRecord
@@ -45,7 +46,7 @@ _FINE = 1000.0
 
 
 @dataclass(frozen=True)
-class ConvexResult:
+class _ConvexResult:
     """The bracket of the multiplier: the last step with equilibrium and the first without; and the work done.
 
     Attributes:
@@ -172,7 +173,7 @@ def bracket_collapse(
     resolution: float,
     fixed_points: int,
     accuracy: float = 1e-6,
-) -> ConvexResult:
+) -> _ConvexResult:
     """March the multiplier up and bisect the step at which the fixed point is lost.
 
     Args:
@@ -187,10 +188,10 @@ def bracket_collapse(
         limit = _settle(programme, 0.0, rough, 2 * fixed_points, _DAMPED)
     if limit is None:
         programme.solve(0.0, rough)
-        return ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
+        return _ConvexResult(0.0, None, record, programme.programmes, False, fall=programme.ray)
     forces = programme.forces(limit)
     if not model.assembly.has_live_load:
-        return ConvexResult(0.0, None, record, programme.programmes, True, forces)
+        return _ConvexResult(0.0, None, record, programme.programmes, True, forces)
     lower, upper, step, at, falls = 0.0, None, first_step, 0.0, np.inf
     growth = np.zeros(model.n_points)
     while upper is None or upper - lower > resolution * max(abs(upper), 1e-6):
@@ -212,7 +213,9 @@ def bracket_collapse(
             break
     settles = upper is None or falls <= upper * (1.0 + _LOST)
     fine = upper is None or upper * largest(model.live) >= _FINE * _REPEATED * largest(model.dead)
-    return ConvexResult(lower, upper, record, programme.programmes, True, forces, at, settles, fine, repeated=_REPEATED)
+    return _ConvexResult(
+        lower, upper, record, programme.programmes, True, forces, at, settles, fine, repeated=_REPEATED
+    )
 
 
 def _settle(
@@ -243,3 +246,53 @@ def _settle(
         least, left = (change, count) if change < _NEARER * least else (least, left - 1)
         limit = limit + share * (new - limit)
     return None
+
+
+def bracket_answer(result: _ConvexResult, forces: FloatArray, details: dict[str, Any]) -> Answer:
+    """The answer of steps that only know between which two of them the wall lost its equilibrium.
+
+    Args:
+        forces: end forces (m, 3) at `result.at`.
+    """
+    lower, upper = result.lower, result.upper
+    path = {"multiplier": list(result.record.multiplier)}
+    if upper is None:
+        return Answer(
+            Status.OK,
+            Finding.UNBOUNDED,
+            "every step of the live load found equilibrium",
+            forces=forces,
+            forces_multiplier=result.at,
+            iterations=result.programmes,
+            path=path,
+            details=details | {"path_status": "unbounded"},
+        )
+    if not (result.settles and result.fine):
+        share = f"{result.repeated:g}"
+        doubt = (
+            f"friction limits that converge to {share} of the loads are not accurate enough for so small a multiplier"
+            if result.settles
+            else f"at {upper:.6g} the friction limits do not converge, which is no proof of collapse"
+        )
+        return Answer(
+            Status.NOT_CONVERGED,
+            Finding.NONE,
+            f"equilibrium is found at {lower:.6g} times the live load; {doubt}",
+            iterations=result.programmes,
+            path=path,
+            details=details | {"path_status": "not_converged", "settled_at": lower},
+        )
+    return Answer(
+        Status.OK,
+        Finding.COLLAPSES,
+        f"equilibrium is found at {lower:.6g} times the live load and none at {upper:.6g}",
+        multiplier=0.5 * (lower + upper),
+        bracket=(lower, upper),
+        bracket_meaning="last step with equilibrium, first step without",
+        forces=forces,
+        forces_multiplier=result.at,
+        flow="approximate",
+        iterations=result.programmes,
+        path=path,
+        details=details | {"path_status": "bracket"},
+    )

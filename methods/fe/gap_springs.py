@@ -13,7 +13,6 @@ from harness.model.assembly import Assembly
 from harness.model.load_steps import NAME
 from harness.model.method import Answer, Finding, Solver, Status
 from methods.fe.answers import (
-    bracket_answer,
     collapse_answer,
     compact,
     falling,
@@ -23,7 +22,7 @@ from methods.fe.answers import (
     stands,
 )
 from methods.fe.brittle import brittle_answer
-from methods.fe.convex_steps import bracket_collapse
+from methods.fe.convex_steps import bracket_answer, bracket_collapse
 from methods.fe.histories import HistoryPlan, HistoryResult, HistoryTuning, trace_history
 from methods.fe.incremental import IncrementalResult, march
 from methods.fe.settings import GapSpringsSettings, NewtonSettings

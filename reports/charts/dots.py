@@ -20,7 +20,7 @@ ROOM = 3.1
 REFERENCE = Mark("", "|", "solid")
 
 
-class Scale(Protocol):
+class _Scale(Protocol):
     """An axis from 0 to 100 % of the width."""
 
     ticks: list[float]
@@ -89,7 +89,7 @@ class DotPlot:
     """
 
     title: str
-    scale: Scale
+    scale: _Scale
     rows: list[DotRow]
     band: tuple[float, float] | None = None
 
@@ -128,7 +128,7 @@ class Above:
         return "least" if value == 0.0 else f"{100.0 * value:+g} %".replace("-", "−")
 
 
-def plain_scale(values: list[float], *, log: bool = False) -> Scale:
+def plain_scale(values: list[float], *, log: bool = False) -> _Scale:
     """An axis of the values themselves."""
     return Axis(values, 3.0, 97.0, log=log)
 
@@ -197,7 +197,7 @@ def _row(plot: DotPlot, row: DotRow, lanes: dict[str, int], number: int) -> Mark
     ).format(number, f"{row.spread:.9g}", name, height, said, drawn, row.said)
 
 
-def _labels(scale: Scale) -> list[tuple[float, str]]:
+def _labels(scale: _Scale) -> list[tuple[float, str]]:
     """Places and texts of ticks, those left out that have no room beside others.
 
     What the axis counts from comes first: it has its label on every axis, and on a phone, which shows every other one.

@@ -66,7 +66,7 @@ class _PrintedApplication(Strict):
     rows: list[_PrintedApplicationRow]
 
 
-class Printed(Strict):
+class _Printed(Strict):
     """The content of `cases/paper.toml`."""
 
     block: _PrintedBlock
@@ -80,9 +80,9 @@ class Printed(Strict):
 
 
 @cache
-def printed() -> Printed:
+def printed() -> _Printed:
     """What the paper prints, read once."""
-    return shipped_words(Printed, "paper.toml")
+    return shipped_words(_Printed, "paper.toml")
 
 
 @dataclass(frozen=True)

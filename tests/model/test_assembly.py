@@ -68,3 +68,17 @@ def test_a_wall_dilates_where_one_joint_does():
     assert replace(wall, dilatancy=np.array([0.0, 0.1])).dilates
     with pytest.raises(ValueError, match="dilatancy has 1 entries for 2"):
         replace(wall, dilatancy=np.array([0.0]))
+
+
+def test_further_joints_are_plain_where_nothing_is_said_of_them():
+    wall = two_blocks()
+    names = ("block_a", "block_b", "end1", "end2", "face1", "face2", "normal", "friction", "dilatancy")
+    given: dict[str, Any] = {name: getattr(wall, name)[:1] for name in names}
+    found = wall.with_further_joints(("again",), **given)
+    m = wall.n_interfaces
+    assert (found.n_interfaces, found.joint[m:]) == (m + 1, ("again",))
+    assert [found.crushing[m], found.brittle[m], found.bar_stiffness[m]] == [np.inf, False, 0.0]
+    assert found.constant[m].tolist() == [0.0] * 4
+    assert np.array_equal(found.with_joints(np.arange(m)).end1, wall.end1)
+    with pytest.raises(KeyError, match="friction"):
+        wall.with_further_joints(("again",), **{name: given[name] for name in names if name != "friction"})

@@ -92,7 +92,7 @@ class Distribution(Strict):
         return self
 
 
-class StudyLimits(Strict):
+class _StudyLimits(Strict):
     """What one run may use."""
 
     seconds: Annotated[float, Field(gt=0.0, le=LONGEST)] = 120.0
@@ -133,7 +133,7 @@ class Study(Strict):
     neighbours: StrictBool = Field(
         False, description="runs use the mechanisms found on walls with the same joints, if the method supports it"
     )
-    limits: StudyLimits = Field(default_factory=StudyLimits)
+    limits: _StudyLimits = Field(default_factory=_StudyLimits)
     multipliers: list[float] = Field(default_factory=list, description="for the probability of failure")
     curve: Curve | None = Field(None, description="how `drystone compare --study` draws it")
 
