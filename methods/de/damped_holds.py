@@ -152,11 +152,10 @@ class ReleasedCollapse(Solver):
         return answer
 
 
-def _mujoco_tunings(
-    assembly: Assembly, settings: MujocoSettings, options: MujocoTuning = MujocoTuning()
-) -> list[tuple[MassScaling, float]]:
+def _mujoco_tunings(assembly: Assembly, settings: MujocoSettings) -> list[tuple[MassScaling, float]]:
     """Tunings with their impedances, in the order in which they are tried: light tops first."""
-    course, contacts = courses(assembly), options.contacts
+    options, course = MujocoTuning(), courses(assembly)
+    contacts = options.contacts
     tuning = lighter_upwards(course)
     usual = contacts.chain_impedance if is_chain(course) else contacts.wall_impedance
     impedance = settings.impedance or usual
