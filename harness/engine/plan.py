@@ -65,8 +65,6 @@ def check_methods(names: Sequence[str], element: str = "--methods") -> None:
             )
 
 
-
-
 def check_taken(method: Method, case: Case, option: str = "") -> None:
     """Refuse a wall with joints, bars or supports that a method which is asked by name does not take.
 

@@ -118,9 +118,7 @@ def handed_on(runs: Sequence[SweepRun], rows: Iterable[Row], store: Store, make:
             break
         ended = {int(row["number"]): row for row in make([run for _, run in asked.values()])}
         changed = [
-            cell
-            for number, (cell, _) in asked.items()
-            if cell.takes(ended[number], _failure(ended[number], store))
+            cell for number, (cell, _) in asked.items() if cell.takes(ended[number], _failure(ended[number], store))
         ]
     return [row for _, row in sorted((by_number | {cell.run.number: cell.row for cell in cells}).items())]
 
