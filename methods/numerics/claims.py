@@ -262,8 +262,6 @@ def _proved(assembly: Assembly, answer: Answer) -> Answer:
     if answer.finding is Finding.FALLS and answer.flow == "approximate":
         tries = (dilatant_mechanism(assembly, assembly.dead, exact=exact) for exact in (True, False))
         proof = next((found for found in tries if found is not None), None)
-        if proof is None and assembly.strong:
-            proof = _fall_of_strong(assembly)
         if proof is not None:
             return replace(answer, details=answer.details | {"dilatant_mechanism": proof.tolist()})
     return answer
@@ -296,15 +294,6 @@ def _not_shown(answer: Answer, reason: str) -> Answer:
     """The answer, not converged for a reason; the load that was held, if any, and its forces stay."""
     sentence = f"not converged: {answer.sentence.rstrip('.')}. {reason}."
     return replace(answer, status=Status.NOT_CONVERGED, finding=Finding.NONE, sentence=sentence)
-
-
-def _fall_of_strong(assembly: Assembly) -> FloatArray | None:
-    """A dilatant mechanism (n, 3) on which the dead load does more work than joints with strength take; None if none.
-
-    It is dual to the greatest multiple of the dead load that is in equilibrium within yield, where that is below one.
-    """
-    found = greatest_multiplier(replace(assembly, live=assembly.dead))
-    return found[2] if found is not None and found[0] < 0.0 else None
 
 
 def growing_forces(assembly: Assembly) -> FloatArray | None:

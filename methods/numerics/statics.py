@@ -108,9 +108,9 @@ def dilatant_mechanism(
 ) -> FloatArray | None:
     """A mechanism (n, 3) of dilatant flow on which a load does positive work, so that no equilibrium exists under it.
 
-    It is that of the greatest work near `about`; None where that is `_LEAST_WORK` or less, or where the programme
-    fails: exactly no work would mean an equilibrium (Farkas' lemma), but the programme holds to its tolerances only.
-    None too where joints have strength, whose work is not in the programme.
+    It is that of the greatest work near `about`, less what cohesion, tensile strength and bars take; None where that is
+    `_LEAST_WORK` or less, or where the programme fails: exactly no work would mean an equilibrium (Farkas' lemma), but
+    the programme holds to its tolerances only. None too where joints crush.
 
     Args:
         assembly: the wall.
@@ -121,17 +121,22 @@ def dilatant_mechanism(
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
-    if assembly.strong or assembly.crushes:
+    if assembly.crushes:
         return None
     length = assembly.length_scale or 1.0
     column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
     pull = load[assembly.free].ravel() * column / assembly.force_scale
     centre = np.zeros(len(pull)) if about is None else about[assembly.free].ravel() / column
-    rates = (assembly.kinematic_matrix @ sp.diags(column)).tocsr()
-    slip = sp.diags(assembly.friction) @ rates[2::3]
-    rows = sp.vstack([rates[end::3] + sign * slip for end in (0, 1) for sign in (1.0, -1.0)])
-    bounds = (np.zeros(rows.shape[0]), np.full(rows.shape[0], INFINITY))
-    programme = Programme(sp.csc_matrix(rows), -pull, (centre - within, centre + within), bounds)
+    strains = (assembly.kinematic_matrix @ sp.diags(column)).tocsr()
+    rows, most, taken = _flow_limits(assembly, strains) if assembly.strong else _dry_flow_limits(assembly, strains)
+    slips = np.zeros(rows.shape[1] - len(pull))
+    gain = np.append(pull, slips) - taken
+    programme = Programme(
+        sp.csc_matrix(rows),
+        -gain,
+        (np.append(centre - within, slips), np.append(centre + within, slips + INFINITY)),
+        (np.zeros(rows.shape[0]), most),
+    )
     status, motion, _ = programme.run()
     if status != "optimal":
         return None
@@ -140,8 +145,9 @@ def dilatant_mechanism(
         if vertex is None or not vertex.feasible:
             return None
         motion = vertex.value
-    if not pull @ motion > (_LEAST_EXACT_WORK if exact else _LEAST_WORK):
+    if not gain @ motion > (_LEAST_EXACT_WORK if exact else _LEAST_WORK):
         return None
+    motion = motion[: len(pull)]
     mechanism = np.zeros((assembly.n_blocks, 3))
     mechanism[assembly.free] = (motion * column).reshape(-1, 3)
     return mechanism
@@ -157,3 +163,32 @@ def _borne_forces(assembly: Assembly, load: FloatArray) -> FloatArray | None:
     if found.forces is None or not found.multiplier >= 1.0:
         return None
     return found.forces / found.multiplier
+
+
+def _dry_flow_limits(assembly: Assembly, strains: sp.csr_matrix) -> tuple[sp.csr_matrix, FloatArray, FloatArray]:
+    """Rows of dilatant flow of velocities (3n,) where joints are dry, their upper bounds, and what joints take: none.
+
+    Every end opens by friction times the slip or more. The lower bounds are zero.
+    """
+    slip = sp.diags(assembly.friction) @ strains[2::3]
+    rows = sp.vstack([strains[end::3] + sign * slip for end in (0, 1) for sign in (1.0, -1.0)])
+    return sp.csr_matrix(rows), np.full(rows.shape[0], np.inf), np.zeros(strains.shape[1])
+
+
+def _flow_limits(assembly: Assembly, strains: sp.csr_matrix) -> tuple[sp.csr_matrix, FloatArray, FloatArray]:
+    """The same of velocities (3n,) and slips (2m,) of both signs where joints have strength, and the power they take.
+
+    With the rates g = (o1 - mu (g3 + g4), o2 - mu (g3 + g4), g3, g4) of associated flow, q3 = g3 - g4, it is s0 . g.
+    """
+    m, unit = assembly.n_interfaces, assembly.force_scale
+    friction, own = sp.diags(assembly.friction), sp.identity(m, format="csr")
+    lift, none = sp.hstack([friction, friction]), np.zeros(m)
+    rows = sp.vstack([*(sp.hstack([strains[end::3], -lift]) for end in (0, 1)), sp.hstack([strains[2::3], -own, own])])
+    constant = assembly.law.constant / unit
+    slips = constant[:, 2:] - (assembly.friction * constant[:, :2].sum(axis=1))[:, None]
+    taken = sum(strains[end::3].T @ constant[:, end] for end in (0, 1))
+    return (
+        sp.csr_matrix(rows),
+        np.concatenate([np.full(2 * m, np.inf), none]),
+        np.concatenate([taken, slips[:, 0], slips[:, 1]]),
+    )

@@ -14,8 +14,10 @@ from harness.model.method import Answer, Finding, Status
 from harness.model.method_registry import load_method
 from harness.model.reading import read_wall
 from methods.numerics.claims import at_limit
+from methods.numerics.statics import dilatant_mechanism, strength_power
 from tests.known_walls import WALLS
-from tests.walls import assembly, running_bond
+from tests.tied_walls import bar, built
+from tests.walls import assembly, running_bond, stack
 
 EDGE = Path(__file__).parent.parent / "data" / "knife-edge"
 
@@ -113,4 +115,38 @@ def test_a_fall_by_little_that_was_measured_is_proved_by_a_mechanism_to_rounding
     loads = {"gravity": [0.0125, -1.0], "live": None}
     wall = assembly(running_bond(3, 2, 0.5, 0.25), 0.0125 * (1.0 - 1e-5), loads=loads)
     result, judgement = answered(load_method("fe"), wall)
+    assert (result.finding, judgement.accepted) == (Finding.FALLS, True)
+
+
+@pytest.mark.parametrize(("cohesion", "falls"), [(1.19, True), (1.21, False)])
+def test_a_block_slides_down_where_its_weight_does_more_work_than_cohesion_takes(cohesion: float, falls: bool):
+    """Weight 4 down a slope of .5 with friction .2: c A = 1.2 holds it."""
+    wall = assembly(stack(1, 1.0), 0.2, cohesion=cohesion, loads={"gravity": [0.5, -1.0], "live": None})
+    mechanism = dilatant_mechanism(wall, wall.dead)
+    assert (mechanism is not None) is falls
+    if mechanism is not None:
+        assert (wall.dead * mechanism).sum() > strength_power(wall, mechanism)
+
+
+@pytest.mark.parametrize("method", ["fe", "de"])
+def test_a_fall_of_a_tied_wall_that_no_share_of_its_dead_load_holds_up_is_proved(method: str):
+    """The prestress pulls a stone off: no forces at all bear the share zero, but rounding of the load was left."""
+
+    def stone(name: str, left: float, bottom: float, right: float, top: float, **more: object) -> dict[str, object]:
+        return {"id": name, "polygon": [[left, bottom], [right, bottom], [right, top], [left, top]], **more}
+
+    blocks = [
+        stone("ground", -0.5, -0.3, 1.4, 0.0, fixed=True),
+        stone("left", 0.0, 0.0, 0.3, 0.45),
+        stone("right", 0.675, 0.0, 0.9, 0.45, thickness=0.2),
+        stone("pulled", 0.0, 0.45, 0.225, 0.75),
+        stone("long", 0.225, 0.45, 0.675, 0.75, thickness=0.2),
+    ]
+    wall = {
+        **{"format": "wall/1", "unit_weight": 20, "thickness": 0.5, "blocks": blocks},
+        "friction": {"default": 0.6, "rules": [{"joint": "head", "value": 0.0}]},
+        "loads": {"gravity": [-0.1, -1], "live": {"body": [{"per_weight": [1, 0]}]}},
+        "ties": [bar(("ground", [-0.5, 0.0]), ("pulled", [0.0, 0.6]), 3.0, prestress=0.75)],
+    }
+    result, judgement = answered(load_method(method), built(wall))
     assert (result.finding, judgement.accepted) == (Finding.FALLS, True)
