@@ -33,6 +33,9 @@ _MOVING = 1e-7
 """Rate of a joint, beside the fastest, above which it moves; mechanisms of methods are good to 1e-8."""
 _SETTLED = 1e-8
 """Change of a pressed share at which the tangents are those at the forces: the error is its square."""
+_ASIDE = 1e3
+"""Weight of strains that the rows of moving joints do not explain, beside differences of their rates. Where pressed
+shares do not fit together to rounding, no motion but rest is without any."""
 _ROUNDS = 12
 """Of tangents, at most. Each squares the change."""
 _SOLVED = 1e-12
@@ -252,9 +255,9 @@ def _nearest_forces(
 
 
 def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> FloatArray | None:
-    """The motion (n, 3) of joints that press shares (m,) nearest to rates (m, 4), along rows that move in these alone.
+    """The motion (n, 3) of joints that press shares (m,) nearest to rates (m, 4), along rows that move in these.
 
-    None where the programme fails.
+    Strains aside from these rows are weighted by `_ASIDE`. None where the programme fails.
     """
     from methods.numerics.linear_programme import INFINITY, Programme
 
@@ -262,13 +265,19 @@ def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> 
     column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
     _, _, flow = _tangents(assembly, share)
     strains, own = assembly.kinematic_matrix @ sp.diags(column), sp.identity(4 * m, format="csr")
-    matrix = sp.bmat([[strains, -block_diagonal(flow), None], [None, own, sp.hstack([-own, own])]])
+    aside = sp.identity(3 * m, format="csr")
+    matrix = sp.bmat(
+        [
+            [strains, -block_diagonal(flow), None, sp.hstack([-aside, aside])],
+            [None, own, sp.hstack([-own, own]), None],
+        ]
+    )
     target = np.maximum(rates, 0.0).ravel() / rates.max()
-    speeds, none, parts = np.full(3 * n, INFINITY), np.zeros(12 * m), np.full(8 * m, INFINITY)
+    speeds, none, parts = np.full(3 * n, INFINITY), np.zeros(18 * m), np.full(14 * m, INFINITY)
     right = np.append(np.zeros(3 * m), target)
     programme = Programme(
         sp.csc_matrix(matrix),
-        np.append(np.zeros(3 * n + 4 * m), np.ones(8 * m)),
+        np.concatenate([np.zeros(3 * n + 4 * m), np.ones(8 * m), np.full(6 * m, _ASIDE)]),
         (np.append(-speeds, none), np.concatenate([speeds, np.where(target > 0.0, INFINITY, 0.0), parts])),
         (right, right),
     )

@@ -135,3 +135,24 @@ def test_forces_of_the_stress_block_by_hand():
     assert block_forces(wall, np.array([[3.0, -1.0]])) == pytest.approx(np.array([[0.25, 1.75]]))
     assert block_forces(wall, np.array([[-1.0, -2.0]])) == pytest.approx(np.array([[4.0, 4.0]]))
     assert block_forces(wall, np.array([[1.0, 2.0]])) == pytest.approx(np.zeros((1, 2)))
+
+
+def test_motion_is_found_beside_a_joint_that_a_rounded_force_presses():
+    """The left stone turns about a tenth of its base; the head joint, level with that, would have to close below."""
+    panel = {"type": "panel", "cell_length": 1.0, "cell_height": 1.0, "layout": ["LR", "##"], "fixed": "#"}
+    wall = assembly(panel, 0.5, compressive_strength=100.0)
+    ids = [(wall.block_ids[a], wall.block_ids[b]) for a, b in zip(wall.block_a, wall.block_b, strict=True)]
+    base, head = ids.index(("#", "L")), ids.index(("L", "R"))
+    turned = wall.block_ids.index("L")
+    motion = np.zeros((wall.n_blocks, 3))
+    away = wall.end1[base] + wall.end2[base] - wall.centroid[turned] * 2.0
+    motion[turned] = [0.5 * away[1], 0.4, 1.0]
+    strains = (wall.kinematic_matrix @ motion[wall.free].ravel()).reshape(-1, 3)
+    rates = np.maximum(wall.law.rates(strains), 0.0)
+    opening = strains[base, :2]
+    rates[base] = [*np.where(opening > 0.0, np.ptp(opening), 0.0), 0.0, 0.0]
+    share = np.zeros(wall.n_interfaces)
+    share[base], share[head] = 0.1, 1e-7
+    found = nearest_motion(wall, share, rates)
+    assert found is not None
+    assert found == pytest.approx(motion / rates.max(), abs=1e-6)
