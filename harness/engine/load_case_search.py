@@ -20,7 +20,7 @@ from harness.engine.run import Motion, Run
 from harness.model.details import AnswerDetails
 from harness.model.envelope import EQUAL, safe_size
 from harness.model.method_registry import load_method
-from harness.model.result import Result, relative_velocities
+from harness.model.result import Result
 
 Make = Callable[[Sequence[Run]], list[Result]]
 """Makes runs, or finds them in the store; results in the order of the runs."""
@@ -76,9 +76,7 @@ class _Group:
         if lower or (case.result is None and not run.given):
             case.run, case.result = run, result
         if lower and not run.given and result.mechanism is not None:
-            assembly = run.case.assembly
-            joints = np.column_stack(relative_velocities(assembly, np.asarray(result.mechanism, dtype=float)))
-            self.motions.append(Motion(run.key, joints))
+            self.motions.append(Motion.of(run.key, run.case.assembly, result.mechanism))
 
 
 def made_together(runs: Sequence[Run], wall_of: Callable[[Run], str], make: Make) -> tuple[list[Run], list[Result]]:

@@ -18,7 +18,7 @@ from harness.model.assembly import Assembly, FloatArray
 from harness.model.case import Reference
 from harness.model.foreign.register import program_named
 from harness.model.method import Traits
-from harness.model.result import Judgement, Result, result_of
+from harness.model.result import Judgement, Result, relative_velocities, result_of
 
 LONGEST = 1e9
 """Seconds that a run may be given: thirty years, which clocks and timers still count."""
@@ -73,6 +73,11 @@ class Motion:
 
     found_by: str
     joints: FloatArray
+
+    @classmethod
+    def of(cls, found_by: str, assembly: Assembly, mechanism: Sequence[Sequence[float]]) -> Motion:
+        """How the joints of a wall move in the mechanism (n, 3) that a run of this key found."""
+        return cls(found_by, np.column_stack(relative_velocities(assembly, np.asarray(mechanism, dtype=float))))
 
     @cached_property
     def key(self) -> str:

@@ -24,7 +24,6 @@ from harness.model.assembly import Assembly, IntArray
 from harness.model.details import AnswerDetails
 from harness.model.method import Finding, Status
 from harness.model.method_registry import load_method
-from harness.model.result import relative_velocities
 
 Make = Callable[[Sequence[SweepRun]], list[Row]]
 """Makes runs, or finds them in the store, and gives their rows in any order."""
@@ -65,8 +64,7 @@ class _Cell:
         """Take the motion of the joints in the mechanism of the row from the store."""
         kept = store.get(str(self.row["key"])) if np.isfinite(self.multiplier) else None
         if kept is not None and kept[0].mechanism is not None:
-            opening, slip = relative_velocities(self.assembly, np.asarray(kept[0].mechanism, dtype=float))
-            self.motion = Motion(str(self.row["key"]), np.column_stack([opening, slip]))
+            self.motion = Motion.of(str(self.row["key"]), self.assembly, kept[0].mechanism)
 
     def asks(self) -> SweepRun | None:
         """The run that takes up what neighbours know and this one was not handed yet; None where there is nothing."""
