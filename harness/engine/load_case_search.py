@@ -67,13 +67,14 @@ class _Group:
         return [] if chosen.searched else [(chosen, chosen.alone)]
 
     def takes(self, case: _LoadCase, run: Run, result: Result) -> None:
-        """Note what a run found; a search that found a lower state hands its mechanism on."""
-        lower = _size(result) < case.size * (1.0 - EQUAL)
+        """Note what a run found: a search stands for its case unless that is higher, and hands on what is lower."""
+        size = _size(result)
+        lower = size < case.size * (1.0 - EQUAL)
         if run.given:
             case.handed = len(self.motions)
         else:
             case.searched = True
-        if lower or (case.result is None and not run.given):
+        if lower or not (run.given or size > case.size * (1.0 + EQUAL)):
             case.run, case.result = run, result
         if lower and not run.given and result.mechanism is not None:
             self.motions.append(Motion.of(run.key, run.case.assembly, result.mechanism))

@@ -61,6 +61,7 @@ def test_similar_load_cases_are_searched_twice_in_all_and_end_where_each_does_al
         assert result.judge.accepted
         assert result.key == run.key
         assert bool(result.given) == bool(run.given)
+    assert [run.case.id for run in stand if run.method == "la" and not run.given] == searched
     taken = results[2]
     assert taken.given == [results[0].key]
     assert "mechanisms of other runs" in taken.sentence
