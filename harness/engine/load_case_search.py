@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from harness.engine.preload import shipped
 from harness.engine.run import Motion, Run
 from harness.model.details import AnswerDetails
 from harness.model.envelope import EQUAL, safe_size
@@ -107,8 +108,11 @@ def made_together(runs: Sequence[Run], wall_of: Callable[[Run], str], make: Make
 
 
 def _groups(runs: Sequence[Run], wall_of: Callable[[Run], str]) -> Iterator[_Group]:
-    """Runs of one method, with the same settings, on several load cases of one wall."""
-    follow = {name for name in {run.method for run in runs} if load_method(name).follows_motions}
+    """Runs of one method, with the same settings, on several load cases of one wall.
+
+    Whether a method of others takes up motions is known only where it is loaded: in the process that runs it.
+    """
+    follow = {name for name in shipped({run.method for run in runs}) if load_method(name).follows_motions}
     groups = defaultdict[Hashable, _Group](_Group)
     for number, run in enumerate(runs):
         if run.method in follow and wall_of(run):

@@ -60,7 +60,7 @@ def curves(item: CaseResults) -> list[tuple[str, Markup]]:
 
 
 def _associated_level(multiplier: float) -> tuple[str, float]:
-    return f"associated maximum {numbers.multiplier(multiplier)} (upper bound)", multiplier
+    return f"associated upper bound {numbers.multiplier(multiplier)}", multiplier
 
 
 def _load_displacement(item: CaseResults, result: Result, moved: list[float], loads: list[float]) -> tuple[str, Markup]:

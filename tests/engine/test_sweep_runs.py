@@ -86,7 +86,7 @@ def test_the_command_leaves_tables_and_a_page_and_says_what_it_would_do(tmp_path
     assert done.returncode == 0, done.stderr
     assert "5 runs: 5 ok" in done.stdout
     printed = [line.split() for line in done.stdout.splitlines()]
-    assert ["friction", "la-associated"] in printed
+    assert ["friction", "la-associated", "(upper", "bound)"] in printed
     assert ["0.1", "0.1"] in printed  # stones of a stack slide at the coefficient of friction
     page = (tmp_path / "out" / "wall-friction.html").read_text()
     assert "wall over friction" in page

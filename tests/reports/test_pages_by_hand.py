@@ -271,7 +271,7 @@ def test_a_history_of_a_search_never_rises_and_has_the_associated_maximum_as_its
     chart = drawn.chart  # type: ignore[attr-defined]
     (line,) = chart.series
     assert (line.x, line.y, line.step, line.marks) == ([0.1, 0.2, 0.4], [0.6, 0.6, 0.5], True, True)
-    assert chart.levels == [("associated maximum 0.70000 (upper bound)", 0.7)]
+    assert chart.levels == [("associated upper bound 0.70000", 0.7)]
     long = {"cpu_seconds": [0.1 * k for k in range(41)], "multiplier": [0.5] * 41}
     ((_, drawn),) = curves.curves(CaseResults(case, [samples.solved(case, "la", 0.5, path=long)]))
     assert not drawn.chart.series[0].marks  # type: ignore[attr-defined]

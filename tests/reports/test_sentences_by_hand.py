@@ -233,7 +233,7 @@ def test_a_load_path_has_the_levels_that_differ_and_the_place_of_every_step():
     above = samples.solved(case, "la-associated", 0.5002, flow="associated")
     ((_, drawn),) = curves.curves(CaseResults(case, [row, above]))
     chart = drawn.chart  # type: ignore[attr-defined]
-    level = ("associated maximum 0.50020 (upper bound)", 0.5002)
+    level = ("associated upper bound 0.50020", 0.5002)
     assert chart.levels == [level, ("plateau 0.40000", 0.4)], "the peak is as high"
     assert chart.series[0].x == [0.0, *path["live_displacement"]]
     assert chart.series[0].y == [0.0, *path["multiplier"]]
