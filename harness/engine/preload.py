@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterable
+from functools import cache
 
 from harness.model.errors import InputError
 from harness.model.foreign.register import program_named
@@ -20,8 +21,15 @@ def shipped(names: Iterable[str]) -> list[str]:
 
     Only these are known to load without starting threads, which a process that is forked must not have.
     """
-    own = {point.name for point in method_points() if point.dist is not None and point.dist.name == "drystone"}
-    return sorted(own.intersection(names))
+    return sorted(_own().intersection(names))
+
+
+@cache
+def _own() -> frozenset[str]:
+    """Names of the methods that Drystone's package brings; the name of a package is read from a file each time."""
+    return frozenset(
+        point.name for point in method_points() if point.dist is not None and point.dist.name == "drystone"
+    )
 
 
 def load(names: Iterable[str]) -> None:
