@@ -40,8 +40,6 @@ _ROUNDS = 12
 """Of tangents, at most. Each squares the change."""
 _SOLVED = 1e-12
 """Of the equations of forces and mechanism, in mean weights of a block and shares of the live work."""
-_STEP = 1e-13
-"""Accuracy of a step of these equations, relative to the sizes in it."""
 _VIOLATION = 5e-10
 """Of a limit, relative to the terms beside it, that forces and mechanism may have: half of what the judge tolerates.
 Where more limits meet in one point than the mechanism has joints, as in a symmetric arch, vertices keep them to 1e-10
@@ -77,19 +75,11 @@ def exact_state(
         empty: (m,) joints of those that press nothing, since they turn about an end.
         hinges: (m,) shares that joints which turn press, as of `hinges_of_both`; None: as their forces say.
     """
-    known, reached, held = forces, _reached(moving, empty), None
-    if hinges is not None:
-        held = np.where(_turning(assembly, moving), hinges, np.nan)
-    for _ in range(_ROUNDS):
-        share = _shares(assembly, known, held)
-        found = _nearest_forces(assembly, share, reached, forces, held=held)
-        if found is None:
-            return None
-        known, multiplier = found
-        if abs(_shares(assembly, known, held) - share).max(initial=0.0) <= _SETTLED:
-            break
-    else:
+    held = None if hinges is None else np.where(_turning(assembly, moving), hinges, np.nan)
+    found = _settled_forces(assembly, forces, _reached(moving, empty), held=held)
+    if found is None:
         return None
+    known, multiplier = found
     mechanism = _mechanism(assembly, _shares(assembly, known, held), moving)
     return None if mechanism is None else PressedState(multiplier, known, mechanism)
 
@@ -142,7 +132,8 @@ def hinges_of_both(
             [None, None, along, None],
         ]
         matrix = sp.csr_matrix(sp.bmat(slopes))
-        step = lsqr(matrix, -np.concatenate(left), atol=_STEP, btol=_STEP, iter_lim=10 * matrix.shape[1])[0]
+        exact = 0.1 * _SOLVED
+        step = lsqr(matrix, -np.concatenate(left), atol=exact, btol=exact, iter_lim=10 * matrix.shape[1])[0]
         by_force, by_load, by_motion, by_rate = np.split(step, sizes)
         forces, multiplier = forces + by_force, multiplier + float(by_load[0])
         velocity, speed = velocity + by_motion, speed + by_rate
@@ -179,15 +170,28 @@ def _tangents(assembly: Assembly, share: FloatArray) -> tuple[FloatArray, FloatA
 
 def held_forces(assembly: Assembly, forces: FloatArray, multiplier: float) -> FloatArray | None:
     """The contact forces (m, 3) within the stress blocks that bear a multiplier, near others; None without any."""
-    known, rests = forces, np.zeros((assembly.n_interfaces, 4), dtype=bool)
+    rests = np.zeros((assembly.n_interfaces, 4), dtype=bool)
+    found = _settled_forces(assembly, forces, rests, multiplier)
+    return None if found is None else found[0]
+
+
+def _settled_forces(
+    assembly: Assembly,
+    near: FloatArray,
+    reached: BoolArray,
+    multiplier: float | None = None,
+    held: FloatArray | None = None,
+) -> tuple[FloatArray, float] | None:
+    """As `_nearest_forces`, within tangents at the forces that are found; None where these do not settle."""
+    known = near
     for _ in range(_ROUNDS):
-        share = pressed_shares(assembly, known)
-        found = _nearest_forces(assembly, share, rests, forces, multiplier)
+        share = _shares(assembly, known, held)
+        found = _nearest_forces(assembly, share, reached, near, multiplier, held)
         if found is None:
             return None
-        known = found[0]
-        if abs(pressed_shares(assembly, known) - share).max(initial=0.0) <= _SETTLED:
-            return known
+        known, _ = found
+        if abs(_shares(assembly, known, held) - share).max(initial=0.0) <= _SETTLED:
+            return found
     return None
 
 
@@ -196,8 +200,8 @@ def _nearest_forces(
     share: FloatArray,
     reached: BoolArray,
     near: FloatArray,
-    multiplier: float | None = None,
-    held: FloatArray | None = None,
+    multiplier: float | None,
+    held: FloatArray | None,
 ) -> tuple[FloatArray, float] | None:
     """Forces (m, 3) nearest to others within tangents at shares (m,), and their multiplier, which may be given.
 
@@ -219,13 +223,7 @@ def _nearest_forces(
     pressing = np.flatnonzero(~np.isnan(press))
     tension = assembly.constant[pressing, 0] + assembly.constant[pressing, 1]
     pressed = press[pressing] * (assembly.crushing[pressing] + tension) - tension
-    ends = sp.csr_matrix(
-        (
-            [1.0] * 2 * len(pressing),
-            (np.repeat(np.arange(len(pressing)), 2), np.add.outer(3 * pressing, [0, 1]).ravel()),
-        ),
-        (len(pressing), 3 * m),
-    )
+    ends = block_diagonal(np.tile([[1.0, 1.0, 0.0]], (m, 1, 1)))[pressing]
     matrix = sp.bmat(
         [
             [statics, sp.csr_matrix(live[:, None]), None],

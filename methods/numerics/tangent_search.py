@@ -177,16 +177,7 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         if answer.finding is Finding.COLLAPSES and hinge is not None:
             assert of_wall.mechanism is not None
             rates = tangents.rates_of_joints(moving_rates(wall, of_wall.mechanism))
-            empty = np.isfinite(assembly.crushing) & (rates[:, :2] > 0.0).any(axis=1) & (hinge <= options.pressed)
-            state = exact_state(assembly, answer.forces, rates > 0.0, empty)
-            if state is None:
-                assert answer.multiplier is not None
-                assert answer.mechanism is not None
-                near = PressedState(answer.multiplier, answer.forces, answer.mechanism)
-                both = hinges_of_both(assembly, near, rates, empty)
-                if both is not None:
-                    hinge = np.where((rates[:, :2] > 0.0).any(axis=1), both, hinge)
-                    state = exact_state(assembly, answer.forces, rates > 0.0, empty, both)
+            state, hinge = _state_near(assembly, answer, rates, hinge, options)
             if state is not None and state.multiplier > 0.0:
                 found.append(_with_state(answer, state, rounds))
                 assert answer.multiplier is not None
@@ -206,6 +197,30 @@ def _to_its_end(assembly: Assembly, solve: Solve, options: TangentTolerances, fo
         f"stress blocks led to none{ended}"
     )
     return not_found(answer, sentence, greatest.upper)
+
+
+def _state_near(
+    assembly: Assembly, answer: Answer, rates: FloatArray, hinge: FloatArray, options: TangentTolerances
+) -> tuple[PressedState | None, FloatArray]:
+    """The exact state near an answer within tangents, if there is one, and the shares (m,) about which joints turn.
+
+    Where the nearest forces leave no mechanism, forces and mechanism are solved for together.
+
+    Args:
+        rates: (m, 4) of the rows of its mechanism; hinge: (m,) shares about which its joints turn.
+    """
+    assert answer.forces is not None
+    assert answer.multiplier is not None
+    assert answer.mechanism is not None
+    moving, turns = rates > 0.0, (rates[:, :2] > 0.0).any(axis=1)
+    empty = np.isfinite(assembly.crushing) & turns & (hinge <= options.pressed)
+    state = exact_state(assembly, answer.forces, moving, empty)
+    if state is not None:
+        return state, hinge
+    both = hinges_of_both(assembly, PressedState(answer.multiplier, answer.forces, answer.mechanism), rates, empty)
+    if both is None:
+        return None, hinge
+    return exact_state(assembly, answer.forces, moving, empty, both), np.where(turns, both, hinge)
 
 
 def greatest_of_statics(assembly: Assembly) -> BlockLimit:
