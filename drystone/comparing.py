@@ -22,7 +22,7 @@ from harness.model.case import Case
 from harness.model.comparison import ComparisonRun
 from harness.model.errors import InputError
 from harness.model.load_cases import load_cases_of
-from harness.model.result import Result as Found
+from harness.model.result import Result as Record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -187,13 +187,13 @@ def compared(
     """
     wall_ids, told = {case.id: case.wall_id for case in cases}, set[tuple[str, str, str]]()
 
-    def tell(run: Run, result: Found, stored: bool) -> None:
+    def tell(run: Run, result: Record, stored: bool) -> None:
         planned = run.case.id, run.method, str(run.settings)
         if progress is not None and planned not in told and not (run.given and result.multiplier is None):
             told.add(planned)
             progress(run, result, stored)
 
-    def make(asked: Sequence[Run]) -> list[Found]:
+    def make(asked: Sequence[Run]) -> list[Record]:
         return pipeline.execute(asked, store, 1, fresh=fresh, progress=tell, executor=executor)
 
     runs, results = made_together(runs, lambda run: wall_ids[run.case.id], make)

@@ -18,8 +18,7 @@ import numpy as np
 
 from harness.engine.preload import shipped
 from harness.engine.run import Motion, Run
-from harness.model.details import AnswerDetails
-from harness.model.envelope import EQUAL, safe_size
+from harness.model.envelope import EQUAL, counts_residual, safe_size
 from harness.model.method_registry import load_method
 from harness.model.result import Result
 
@@ -123,6 +122,5 @@ def _groups(runs: Sequence[Run], wall_of: Callable[[Run], str]) -> Iterator[_Gro
 
 def _size(result: Result) -> float:
     """What load cases are ordered by, of an accepted collapse or fall; infinite of anything else."""
-    details = AnswerDetails(result.details)
-    size = safe_size(result, residual=details.has_without_strength or details.has_with_strength)
+    size = safe_size(result, residual=counts_residual(result))
     return np.inf if size is None else size

@@ -40,6 +40,12 @@ def safe_size(result: Result, *, residual: bool) -> float | None:
     return min(sizes) if sizes and len(sizes) == len(answers) else None
 
 
+def counts_residual(result: Result) -> bool:
+    """Whether the residual multiplier counts too, because the joints have cohesion or tensile strength."""
+    details = AnswerDetails(result.details)
+    return details.has_without_strength or details.has_with_strength
+
+
 def ranked_text(result: Result) -> str:
     """The answer by which a load case is ranked; of two, with strength of joints and without, the other behind it."""
     pair = plastic_and_residual_of(result)
@@ -87,8 +93,7 @@ class Envelope:
     @property
     def by_residual(self) -> bool:
         """Whether residual multipliers count, because the joints have cohesion or tensile strength."""
-        details = [AnswerDetails(result.details) for result in self.results]
-        return any(each.has_without_strength or each.has_with_strength for each in details)
+        return any(map(counts_residual, self.results))
 
     @property
     def _sizes(self) -> list[float | None]:

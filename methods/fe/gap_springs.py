@@ -98,8 +98,7 @@ class GapSprings(Solver):
         results, start = list[HistoryResult](), gravity
         scale = _unit(model.assembly)
         tuning = HistoryTuning()
-        limits = [settings.max_events or _FEWEST + count * model.n_points for count in (_FIRST, _FURTHER)]
-        limit = limits[0]
+        limit, further = (settings.max_events or _FEWEST + count * model.n_points for count in (_FIRST, _FURTHER))
         for step in _chosen_histories(model, settings):
             if settings.histories is None and _agree(results, _AGREEING):
                 break
@@ -109,7 +108,7 @@ class GapSprings(Solver):
             start = result.raised or start
             if result.end in (PathEnd.UNBOUNDED, PathEnd.TIME):
                 break
-            limit = min(limit, limits[1])
+            limit = min(limit, further)
             if result.state is None and 0.0 < result.record.peak < np.inf:
                 scale = result.record.peak
             elif result.state is not None:

@@ -21,7 +21,7 @@ from methods.springs.model.wall_model import WallModel
 from methods.springs.path.continuation import PathFollower
 from methods.springs.path.load_path import follow
 from methods.springs.path.path_record import PathEnd, PathRecord, PathSnapshot, PathStep
-from methods.springs.path.plateau import IDLE, PlateauState, finish, share_of_work
+from methods.springs.path.plateau import PlateauState, does_no_work, finish
 from methods.springs.rest.equilibrium import doubled, equilibrium, first_step
 from methods.springs.rest.newton import Equilibrium
 from methods.springs.rest.pseudo_transient import PseudoTransient
@@ -257,7 +257,7 @@ def _not_collapse(model: WallModel, last: PathSnapshot) -> str:
             f"blocks without weight or load move freely ({first_few(moving, 8)}), in an undetermined direction: "
             "give every block a weight, however small"
         )
-    if abs(share_of_work(model.live, last.velocity)) <= IDLE:
+    if does_no_work(model.live, last.velocity):
         return (
             f"at {last.multiplier:.7g} times the live load the wall moves by a mechanism on which that does no work, "
             "as where it takes pressure off a joint that slides: it is no collapse state"

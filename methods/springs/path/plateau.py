@@ -33,7 +33,7 @@ _INERTIA = 1e-7
 _STILL = 1e-6
 """Rates below this share of the fastest are none, where several mechanisms move at once."""
 
-IDLE = 1e-12
+_IDLE = 1e-12
 """Work of the live load on a mechanism, as a share of the sum of its terms' sizes, that is rounding."""
 
 _NOT_UNIQUE = "the plateau is not unique: more than one mechanism moves at once"
@@ -88,7 +88,12 @@ def worst_residual(model: WallModel, shot: PathSnapshot) -> float:
     return _as_traced(model, shot).worst
 
 
-def share_of_work(live: FloatArray, velocity: FloatArray) -> float:
+def does_no_work(live: FloatArray, velocity: FloatArray) -> bool:
+    """Whether the live load does no work on a motion, to rounding."""
+    return abs(_share_of_work(live, velocity)) <= _IDLE
+
+
+def _share_of_work(live: FloatArray, velocity: FloatArray) -> float:
     """Work of the live load on a motion, as a share of the sum of the sizes of its terms."""
     return float(live @ velocity) / (float(abs(live) @ abs(velocity)) or 1.0)
 
@@ -253,9 +258,9 @@ def check(assembly: Assembly, multiplier: float, forces: FloatArray, mechanism: 
     lengths = np.tile([1.0, 1.0, assembly.length_scale], assembly.n_free)
     balance = (matrix.T @ forces.ravel() + dead + multiplier * live) / lengths
     rates = (matrix @ velocity).reshape(-1, 3)
-    power, share = float(live @ velocity), share_of_work(live, velocity)
-    power = power if share > IDLE else 0.0
-    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, IDLE)) or 1.0
+    power, share = float(live @ velocity), _share_of_work(live, velocity)
+    power = power if share > _IDLE else 0.0
+    speed = float(np.abs(velocity * lengths).max()) * min(1.0, max(share, _IDLE)) or 1.0
     law = assembly.law
     opened, slipped = law.rates(rates)[:, :2], np.abs(rates[:, 2])
     slacks, forwards = law.slacks(forces), rates[:, 2] > 0.0
