@@ -326,6 +326,10 @@ class Assembly:
         """Dead and live load vectors (3 n_free,) on the free blocks, in the column order of `kinematic_matrix`."""
         return self.dead[self.free].ravel(), self.live[self.free].ravel()
 
+    def velocity_units(self) -> FloatArray:
+        """(3 n_free,) units of velocity in which a rotation counts times the length scale, in the same order."""
+        return np.tile([1.0, 1.0, 1.0 / (self.length_scale or 1.0)], self.n_free)
+
 
 def polygon_area(polygon: FloatArray) -> float:
     """Area enclosed by a polygon (k, 2) [length^2], without sign."""

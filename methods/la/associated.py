@@ -107,7 +107,7 @@ def _greatest_by_cones(
     """The greatest multiplier up to `most` of live (n, 3) beside dead (n, 3), by a solver of cone programmes."""
     cvxpy = optional("cvxpy", "cvxpy", "method la-associated-cvxpy")
     m, n = assembly.n_interfaces, assembly.n_free
-    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    column = assembly.velocity_units()
     own, acting = dead[assembly.free].ravel() * column, live[assembly.free].ravel() * column
     unit = (float(abs(own).sum()) or float(abs(acting).sum())) / n
     per_unit = unit * n / float(abs(acting).sum())

@@ -94,7 +94,7 @@ def hinges_of_both(
         rates: (m, 4) of the rows of its mechanism, zero where they do not move; empty: as of `exact_state`.
     """
     m, n = assembly.n_interfaces, assembly.n_free
-    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    column = assembly.velocity_units()
     unit = assembly.force_scale / n
     strains = sp.csr_matrix(assembly.kinematic_matrix @ sp.diags(column))
     dead, live = (part * column / unit for part in assembly.free_loads())
@@ -212,10 +212,10 @@ def _nearest_forces(
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
     m, n = assembly.n_interfaces, assembly.n_free
-    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    column = assembly.velocity_units()
     unit = assembly.force_scale / n
     rows, constant, _ = _tangents(assembly, share)
-    statics = (assembly.kinematic_matrix @ sp.diags(column)).T
+    statics = sp.csr_matrix((assembly.kinematic_matrix @ sp.diags(column)).T)
     dead, live = (part * column for part in assembly.free_loads())
     live = live * (assembly.load_unit / unit)
     apart = sp.identity(3 * m, format="csr")
@@ -260,9 +260,10 @@ def nearest_motion(assembly: Assembly, share: FloatArray, rates: FloatArray) -> 
     from methods.numerics.linear_programme import INFINITY, Programme
 
     m, n = assembly.n_interfaces, assembly.n_free
-    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    column = assembly.velocity_units()
     _, _, flow = _tangents(assembly, share)
-    strains, own = assembly.kinematic_matrix @ sp.diags(column), sp.identity(4 * m, format="csr")
+    strains = sp.csr_matrix(assembly.kinematic_matrix @ sp.diags(column))
+    own = sp.identity(4 * m, format="csr")
     aside = sp.identity(3 * m, format="csr")
     matrix = sp.bmat(
         [
@@ -292,11 +293,12 @@ def _mechanism(assembly: Assembly, share: FloatArray, moving: BoolArray) -> Floa
     from methods.numerics.linear_programme import INFINITY, Programme
 
     m, n = assembly.n_interfaces, assembly.n_free
-    column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+    column = assembly.velocity_units()
     _, _, flow = _tangents(assembly, share)
     live = assembly.free_loads()[1] * column
-    strains = assembly.kinematic_matrix @ sp.diags(column)
-    matrix = sp.bmat([[strains, -block_diagonal(flow)], [sp.csr_matrix(live[None, :] / abs(live).sum()), None]])
+    strains = sp.csr_matrix(assembly.kinematic_matrix @ sp.diags(column))
+    work = sp.csr_matrix(live[None, :] / abs(live).sum())
+    matrix = sp.vstack([sp.hstack([strains, -block_diagonal(flow)]), sp.hstack([work, sp.csr_matrix((1, 4 * m))])])
     speeds = np.full(3 * n, INFINITY)
     right = np.append(np.zeros(3 * m), 1.0)
     programme = Programme(

@@ -56,13 +56,8 @@ def greatest_multiplier(assembly: Assembly) -> tuple[float, FloatArray, FloatArr
         return None
     forces = assembly.law.in_units(unit).within(vertex.value[:-1].reshape(-1, 3)) * unit
     motion = np.zeros((assembly.n_blocks, 3))
-    motion[assembly.free] = -vertex.dual[: 3 * assembly.n_free].reshape(-1, 3) * _units_of_velocity(assembly)
+    motion[assembly.free] = (-vertex.dual[: 3 * assembly.n_free] * assembly.velocity_units()).reshape(-1, 3)
     return float(vertex.value[-1]) * assembly.load_unit, forces, motion
-
-
-def _units_of_velocity(assembly: Assembly) -> FloatArray:
-    """(3,) what a unit of (ux, uy, omega) is worth where a rotation counts times the length scale."""
-    return np.array([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)])
 
 
 def _vertex_of_forces(
@@ -75,7 +70,7 @@ def _vertex_of_forces(
     """
     from methods.numerics.linear_programme import INFINITY, Programme  # HiGHS, which few answers need
 
-    column = np.tile(_units_of_velocity(assembly), assembly.n_free)
+    column = assembly.velocity_units()
     own = load[assembly.free].ravel() * column
     unit = float(abs(own).sum()) / max(assembly.n_free, 1)
     m = assembly.n_interfaces
@@ -123,8 +118,7 @@ def dilatant_mechanism(
 
     if assembly.crushes:
         return None
-    length = assembly.length_scale or 1.0
-    column = np.tile([1.0, 1.0, 1.0 / length], assembly.n_free)
+    column = assembly.velocity_units()
     pull = load[assembly.free].ravel() * column / assembly.force_scale
     centre = np.zeros(len(pull)) if about is None else about[assembly.free].ravel() / column
     strains = (assembly.kinematic_matrix @ sp.diags(column)).tocsr()

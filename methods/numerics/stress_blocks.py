@@ -118,7 +118,7 @@ class _LineProgramme:
 
     def __init__(self, assembly: Assembly, dead: FloatArray, live: FloatArray, most: float) -> None:
         self._assembly, m, n = assembly, assembly.n_interfaces, assembly.n_free
-        self._column = np.tile([1.0, 1.0, 1.0 / (assembly.length_scale or 1.0)], n)
+        self._column = assembly.velocity_units()
         own, acting = dead[assembly.free].ravel() * self._column, live[assembly.free].ravel() * self._column
         self._unit = (float(abs(own).sum()) or float(abs(acting).sum())) / n
         self.per_unit = self._unit * n / float(abs(acting).sum())
