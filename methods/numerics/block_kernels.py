@@ -353,6 +353,30 @@ def _times(a: FloatArray, x: FloatArray, out: FloatArray) -> None:
 
 
 @compiled
+def eliminated_into(start: IntArray, neighbour: IntArray) -> tuple[IntArray, IntArray]:
+    """The block that each of n is eliminated into, -1 for none, and how many rows its column of L has: both (n,).
+
+    From every block one climbs the tree that is known so far, beginning at its earlier neighbours (Liu 1986).
+
+    Args:
+        start: (n + 1,) where the neighbours of each block start in `neighbour`, which holds each pair both ways.
+    """
+    n = len(start) - 1
+    parent, seen, count = np.full(n, -1), np.full(n, -1), np.zeros(n, dtype=np.int64)
+    for i in range(n):
+        seen[i] = i
+        for p in range(start[i], start[i + 1]):
+            j = neighbour[p]
+            while j < i and seen[j] != i:
+                seen[j] = i
+                count[j] += 1
+                if parent[j] < 0:
+                    parent[j] = i
+                j = parent[j]
+    return parent, count
+
+
+@compiled
 def add_congruences(slot: IntArray, rows: FloatArray, middle: FloatArray, values: FloatArray) -> None:
     """Add the products rows' middle rows (6, 6) of every interface to the values at its slots.
 

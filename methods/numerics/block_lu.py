@@ -10,11 +10,10 @@ fail while the matrix is symmetric and definite; sliding makes it unsymmetric, a
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from harness.model.assembly import FloatArray, IntArray
-from methods.numerics.block_kernels import factorise, substitute, substitute_many
+from methods.numerics.block_kernels import eliminated_into, factorise, substitute, substitute_many
+from methods.numerics.elimination import dissection_order, minimum_degree_order, neighbours
 
 _WIDEST = 8
 """Blocks of unknowns in a supernode at most: wider ones spend their time inside the diagonal."""
@@ -37,8 +36,7 @@ class BlockPattern:
 
     def __init__(self, first: IntArray, second: IntArray, n: int) -> None:
         """Find the fill of n blocks of unknowns in contact in the pairs (first, second), each (m,), in _postorder."""
-        below, _ = _fill(first, second, n)
-        start, rows = _supernodes(below)
+        start, rows = _supernodes(_fill(first, second, n))
         self.n = n
         self.start = np.array(start)
         width = np.diff(self.start)
@@ -111,28 +109,38 @@ class BlockFactor:
         substitute_many(p.start, p.row_start, p.row, p.offset, self.values, self._swapped, begin, x)
 
 
-def elimination_order(first: IntArray, second: IntArray, n: int) -> IntArray:
-    """Order of n blocks in contact in the pairs (first, second), each (k,): minimum degree, then _postorder."""
-    ones = np.ones(len(first))
-    graph = sp.csr_matrix((ones, (first, second)), shape=(n, n))
-    graph = graph + graph.T
-    degree = np.asarray(graph.sum(axis=1)).ravel()
-    lu = splu((graph + sp.diags(degree + 1.0)).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    order = np.argsort(lu.perm_c)
-    pairs = np.asarray(sp.triu(graph[order][:, order]).nonzero(), dtype=np.int64)
-    out: IntArray = order[_postorder(pairs[0], pairs[1], n)]
-    return out
+def elimination_order(centroid: FloatArray, first: IntArray, second: IntArray) -> IntArray:
+    """Order of n blocks by minimum degree or nested dissection, whichever takes fewer operations; see _postorder.
+
+    Args:
+        centroid: (n, 2) places of the blocks [length].
+        first, second: (k,) pairs of blocks in contact.
+    """
+    n = len(centroid)
+    graph = neighbours(first, second, n)
+    least, best = np.inf, np.arange(n)
+    for order in (minimum_degree_order(first, second, n), dissection_order(centroid, first, second)):
+        ordered = graph[order][:, order]
+        parent, count = eliminated_into(ordered.indptr.astype(np.int64), ordered.indices.astype(np.int64))
+        operations = float(((count + 1.0) ** 2).sum())
+        if operations < least:
+            least, best = operations, order[_postorder(parent, count)]
+    return best
 
 
-def _postorder(first: IntArray, second: IntArray, n: int) -> IntArray:
-    """Blocks in an order with the same fill in which those that are eliminated into each other stand together."""
-    below, parent = _fill(first, second, n)
+def _postorder(parent: IntArray, count: IntArray) -> IntArray:
+    """Blocks in an order with the same fill in which those that are eliminated into each other stand together.
+
+    Args:
+        parent: (n,) block that each is eliminated into; count: (n,) blocks below it, as of `eliminated_into`.
+    """
+    n = len(parent)
     children: list[list[int]] = [[] for _ in range(n)]
-    for j in sorted(range(n), key=lambda j: len(below[j])):
+    for j in np.argsort(count, kind="stable").tolist():
         if parent[j] >= 0:
             children[parent[j]].append(j)
     order: list[int] = []
-    stack = [j for j in range(n) if parent[j] < 0]
+    stack = np.flatnonzero(parent < 0).tolist()
     while stack:
         j = stack.pop()
         order.append(j)
@@ -140,18 +148,17 @@ def _postorder(first: IntArray, second: IntArray, n: int) -> IntArray:
     return np.array(order[::-1])
 
 
-def _fill(first: IntArray, second: IntArray, n: int) -> tuple[list[set[int]], list[int]]:
-    """Rows below the diagonal of each column of L, and the column each is eliminated into (-1 for none)."""
+def _fill(first: IntArray, second: IntArray, n: int) -> list[set[int]]:
+    """Rows below the diagonal of each column of L."""
     below: list[set[int]] = [set() for _ in range(n)]
     for i, j in zip(np.minimum(first, second).tolist(), np.maximum(first, second).tolist(), strict=True):
         if i != j:
             below[i].add(j)
-    parent = [-1] * n
-    for j, rows in enumerate(below):
+    for rows in below:
         if rows:
-            parent[j] = min(rows)
-            below[parent[j]] |= rows - {parent[j]}
-    return below, parent
+            parent = min(rows)
+            below[parent] |= rows - {parent}
+    return below
 
 
 def _supernodes(below: list[set[int]]) -> tuple[list[int], list[list[int]]]:

@@ -10,7 +10,7 @@ import pytest
 
 from harness.model.assembly import FloatArray
 from harness.model.joint_law import JointLaw
-from methods.la.core.newton_matrix import NewtonMatrix, dissection_order
+from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.core.programmes import KinematicProgramme, StaticProgramme
 from methods.la.interior.interior_point import start_point
@@ -134,16 +134,6 @@ def test_a_path_starts_pressed_without_shear_at_products_of_one() -> None:
     np.testing.assert_allclose(start.slack, problem.slacks(forces))
     np.testing.assert_allclose(start.slack * start.rates, 1.0)
     assert (start.multiplier, start.velocities.any()) == (0.0, False)
-
-
-@pytest.mark.parametrize("count", [1, 24, 25, 60])
-def test_an_order_of_elimination_has_every_block_once_and_separators_last(count: int) -> None:
-    place = np.column_stack([np.arange(count, dtype=float), np.zeros(count)])
-    first = np.arange(count - 1)
-    order = dissection_order(place, first, first + 1)
-    assert sorted(order.tolist()) == list(range(count))
-    if 24 < count <= 48:  # a chain in two: the first block of the second half parts them
-        assert order[-1] == count // 2
 
 
 @pytest.mark.parametrize(("sense", "most", "sliding"), [(1.0, 6 / 11, 0.4), (-1.0, 0.6, 4 / 9)])

@@ -1,9 +1,8 @@
 """The Newton matrix K = C' D C of the interior point, assembled block by block and factorised in a fixed order.
 
 D holds one 3 x 3 flexibility per interface. The pattern of K is the adjacency of the blocks, so the order of
-elimination is found once: for small walls by nested dissection of the block centroids (George 1973), and SuperLU
-factorises; for larger ones by minimum degree, with the factors in dense supernodes, which is faster but loads the
-compiled code.
+elimination is found once. SuperLU factorises small walls, by nested dissection; larger ones have factors in dense
+supernodes, which is faster but loads the compiled code.
 """
 
 from __future__ import annotations
@@ -28,42 +27,6 @@ if TYPE_CHECKING:
 _FEW = 200
 """Blocks up to which SuperLU factorises."""
 
-_LEAF = 24
-"""Blocks up to which a part is not divided further by nested dissection."""
-
-
-def dissection_order(centroid: FloatArray, first: IntArray, second: IntArray) -> IntArray:
-    """(n,) order of elimination of n blocks by recursive bisection, separators last.
-
-    Args:
-        centroid: (n, 2) places of the blocks [length].
-        first, second: (k,) pairs of neighbouring blocks.
-    """
-    n = len(centroid)
-    ones = np.ones(len(first))
-    graph = sp.csr_matrix((ones, (first, second)), shape=(n, n))
-    graph = (graph + graph.T).tocsr()
-    pieces: list[IntArray] = []
-    _dissect(np.arange(n), centroid, graph, pieces)
-    return np.concatenate(pieces) if pieces else np.zeros(0, dtype=np.int64)
-
-
-def _dissect(part: IntArray, centroid: FloatArray, graph: sp.csr_matrix, pieces: list[IntArray]) -> None:
-    if len(part) <= _LEAF:
-        pieces.append(part)
-        return
-    place = centroid[part]
-    axis = int(np.argmax(np.ptp(place, axis=0)))
-    rank = np.lexsort((part, place[:, 1 - axis], place[:, axis]))
-    half = len(part) // 2
-    low, high = part[rank[:half]], part[rank[half:]]
-    touched = np.zeros(graph.shape[0], dtype=bool)
-    touched[graph[low].indices] = True
-    border = touched[high]
-    _dissect(low, centroid, graph, pieces)
-    _dissect(high[~border], centroid, graph, pieces)
-    pieces.append(high[border])
-
 
 class NewtonMatrix:
     """Assembles and factorises K = C' D C for one problem and any flexibilities D."""
@@ -77,11 +40,10 @@ class NewtonMatrix:
         both = (block_a >= 0) & (block_b >= 0)
         self.large = n > _FEW
         if self.large:
-            from methods.numerics.block_lu import elimination_order
-
-            order = elimination_order(block_a[both], block_b[both], n)
+            from methods.numerics.block_lu import elimination_order as found
         else:
-            order = dissection_order(assembly.centroid[assembly.free], block_a[both], block_b[both])
+            from methods.numerics.elimination import dissection_order as found
+        order = found(assembly.centroid[assembly.free], block_a[both], block_b[both])
         place = np.empty(n, dtype=np.int64)
         place[order] = np.arange(n)
         self.order = (3 * order[:, None] + np.arange(3)).ravel()

@@ -347,7 +347,8 @@ def _elimination_order(assembly: Assembly) -> IntArray:
     place[assembly.free] = np.arange(assembly.n_free)
     first, second = place[assembly.block_a], place[assembly.block_b]
     both = (first >= 0) & (second >= 0)
-    out: IntArray = assembly.free[elimination_order(first[both], second[both], assembly.n_free)]
+    order = elimination_order(assembly.centroid[assembly.free], first[both], second[both])
+    out: IntArray = assembly.free[order]
     return out
 
 
