@@ -17,7 +17,7 @@ from harness.model.assembly import BoolArray, FloatArray
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.interior.interior_point import PathResult, step_lengths
+from methods.la.interior.interior_point import PathResult
 from methods.la.interior.newton_step import Direction, NewtonStep, Point
 from methods.numerics.failures import NumericalFailure, SingularMatrix
 
@@ -176,7 +176,7 @@ class ArcPath:
 
     def _advance(self, step: NewtonStep, way: _Way, stride: float) -> None:
         change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
-        length = min(step_lengths(self._here.point, change, self._tight, _TO_BOUNDARY, 0.0))
+        length = min(step.lengths(change, _TO_BOUNDARY))
         self._here = _Place(step.advance(change, length, length), self._here.tau * float(np.exp(length * growth)))
 
     def _way(self, step: NewtonStep) -> _Way:

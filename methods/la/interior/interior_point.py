@@ -148,55 +148,42 @@ def follow_path(
             best_merit = merit
         if not product.any() or merit <= 1.0 or iteration - best_at > settings.patience or not np.isfinite(merit):
             break
-        point = _centred_step(step, point, product, pairs, tight, settings.dilatancy, settings.centring)
+        point = _centred_step(step, product, pairs, settings.centring)
     if best is None:
         raise SingularMatrix("the interior point could not factorise its first system")
     return best
 
 
-def _centred_step(
-    step: NewtonStep,
-    point: Point,
-    product: FloatArray,
-    pairs: int,
-    tight: BoolArray,
-    dilatancy: float,
-    options: Centring,
-) -> Point:
+def _centred_step(step: NewtonStep, product: FloatArray, pairs: int, options: Centring) -> Point:
     """Mehrotra's predictor and corrector; where that is blocked, a step that mostly centres."""
+    point = step.point
     mean = float(product.sum()) / pairs
     predictor = step.direction(np.zeros(product.shape))
-    primal, dual = step_lengths(point, predictor, tight, 1.0, dilatancy)
+    primal, dual = step.lengths(predictor, 1.0)
     ahead = (point.slack + primal * predictor.slack) * (point.rates + dual * predictor.rates)
-    mean_ahead = float(np.where(tight, 0.0, ahead).sum()) / pairs
+    mean_ahead = float(np.where(step.tight, 0.0, ahead).sum()) / pairs
     centring = float(np.clip((mean_ahead / mean) ** 3, options.least, 1.0))
     second_order = predictor.slack * predictor.rates * min(primal, dual)
     target = np.clip(centring * mean - second_order, -options.spread * mean, options.spread * mean)
-    corrector, target, lengths = _longer_step(step, point, target, centring * mean, tight, dilatancy, options)
+    corrector, target, lengths = _longer_step(step, target, centring * mean, options)
     if min(lengths) < options.blocked:
         safe = np.clip(options.halved * mean, product / options.spread, None)
         centred = step.direction(safe)
-        if min(step_lengths(point, centred, tight, options.to_boundary, dilatancy)) > min(lengths):
+        if min(step.lengths(centred, options.to_boundary)) > min(lengths):
             corrector, target = centred, safe
     corrector = step.refined(corrector, target)
-    return step.advance(corrector, *step_lengths(point, corrector, tight, options.to_boundary, dilatancy))
+    return step.advance(corrector, *step.lengths(corrector, options.to_boundary))
 
 
 def _longer_step(
-    step: NewtonStep,
-    point: Point,
-    target: FloatArray,
-    mean: float,
-    tight: BoolArray,
-    dilatancy: float,
-    options: Centring,
+    step: NewtonStep, target: FloatArray, mean: float, options: Centring
 ) -> tuple[Direction, FloatArray, tuple[float, float]]:
     """The step to a target, its target and lengths.
 
     Correctors bring the products of a longer step back to the middle (Gondzio 1996), while they lengthen it.
     """
-    change = step.direction(target)
-    primal, dual = step_lengths(point, change, tight, options.to_boundary, dilatancy)
+    point, change = step.point, step.direction(target)
+    primal, dual = step.lengths(change, options.to_boundary)
     for _ in range(options.correctors):
         if min(primal, dual) > options.long:
             break
@@ -206,24 +193,8 @@ def _longer_step(
             np.clip(product, mean / options.spread, options.spread * mean) - product, -options.spread * mean, None
         )
         other = step.direction(target + shift)
-        lengths = step_lengths(point, other, tight, options.to_boundary, dilatancy)
+        lengths = step.lengths(other, options.to_boundary)
         if sum(lengths) < primal + dual + options.worth * options.ahead:
             break
         change, target, (primal, dual) = other, target + shift, lengths
     return change, target, (primal, dual)
-
-
-def step_lengths(
-    point: Point, change: Direction, tight: BoolArray, fraction: float, dilatancy: float
-) -> tuple[float, float]:
-    """Longest steps of slacks and of rates that stay inside; one length for both where flow is not associated."""
-    primal = min(1.0, fraction * _longest(point.slack, change.slack, tight))
-    dual = min(1.0, fraction * _longest(point.rates, change.rates, tight))
-    if dilatancy < 1.0:
-        primal = dual = min(primal, dual)
-    return primal, dual
-
-
-def _longest(value: FloatArray, change: FloatArray, tight: BoolArray) -> float:
-    steepest = -float((change / np.where(tight, np.inf, value)).min(initial=0.0))
-    return 1.0 / steepest if steepest > 0.0 else np.inf

@@ -62,7 +62,7 @@ class NewtonStep:
         self.problem, self.point, self.dilatancy, self.tight = problem, point, dilatancy, tight
         if not (np.all(point.slack[~tight] > 0.0) and np.all(point.rates[~tight] > 0.0)):
             raise FloatingPointError("the iterate left the interior")
-        self.slack = np.where(tight, 1.0, point.slack)
+        self.slack, self.rates = np.where(tight, np.inf, point.slack), np.where(tight, np.inf, point.rates)
         self.statics = problem.imbalance(problem.forces_of_slacks(point.slack), point.multiplier)
         self.kinematics = problem.strains(point.velocities) - problem.strains_of_rates(point.rates, dilatancy)
         self.work = problem.live_work - float(problem.live @ point.velocities)
@@ -75,7 +75,11 @@ class NewtonStep:
         """
         problem = self.problem
         self.weight = np.where(self.tight, RIGID, np.maximum(self.point.rates / self.slack, _SOFTEST))
-        self.compliance = Compliance(problem.law, self.weight, problem.law.lift(self.dilatancy))
+        self.lift = problem.law.lift(self.dilatancy)
+        self.compliance = Compliance(problem.law, self.weight, self.lift)
+        stiff = self.weight > 1.0
+        either, ahead = stiff[:, 2] | stiff[:, 3], self.weight[:, 2] >= self.weight[:, 3]
+        self._by_strain = stiff[:, :2], either & ahead, either & ~ahead
         self.factor = newton.factorise(self.compliance.matrices, 1e-15)
         self.by_live = self.factor.solve(problem.live)
         self.live_compliance = float(problem.live @ self.by_live)
@@ -118,7 +122,9 @@ class NewtonStep:
         )
 
     def _rate_shift(self, target: FloatArray) -> FloatArray:
-        return np.where(self.tight, 0.0, target / self.slack - self.point.rates)
+        shift: FloatArray = target / self.slack - self.point.rates
+        shift[self.tight] = 0.0
+        return shift
 
     def _with_rates(
         self,
@@ -129,7 +135,7 @@ class NewtonStep:
         velocity: FloatArray,
         strain: FloatArray,
     ) -> Direction:
-        slack = np.where(self.tight, 0.0, slack)
+        slack[self.tight] = 0.0
         return Direction(forces, slack, multiplier, velocity, self._rates(rate_shift, slack, strain + self.kinematics))
 
     def _rates(self, shift: FloatArray, slack: FloatArray, strain: FloatArray) -> FloatArray:
@@ -137,16 +143,25 @@ class NewtonStep:
 
         Where w = g/y is large, w dy magnifies rounding; compatibility gives dg there without loss.
         """
-        rate = shift - np.where(self.tight, 0.0, self.weight * slack)
+        ends, ahead, behind = self._by_strain
+        rate = shift - self.weight * slack
         forward, backward = rate[:, 2].copy(), rate[:, 3].copy()
-        stiff = np.maximum(self.weight[:, 2], self.weight[:, 3]) > 1.0
-        ahead = self.weight[:, 2] >= self.weight[:, 3]
-        rate[:, 2] = np.where(stiff & ahead, strain[:, 2] + backward, forward)
-        rate[:, 3] = np.where(stiff & ~ahead, forward - strain[:, 2], backward)
-        dilation = self.problem.law.lift(self.dilatancy) * (rate[:, 2] + rate[:, 3])
-        for end in (0, 1):
-            rate[:, end] = np.where(self.weight[:, end] > 1.0, strain[:, end] - dilation, rate[:, end])
+        rate[:, 2] = np.where(ahead, strain[:, 2] + backward, forward)
+        rate[:, 3] = np.where(behind, forward - strain[:, 2], backward)
+        dilation = self.lift * (rate[:, 2] + rate[:, 3])
+        rate[:, :2] = np.where(ends, strain[:, :2] - dilation[:, None], rate[:, :2])
         return rate
+
+    def lengths(self, change: Direction, fraction: float) -> tuple[float, float]:
+        """Lengths, 1 at most, that take slacks and rates this part of the way to their boundary.
+
+        One length for both where flow is not associated.
+        """
+        primal = min(1.0, fraction * _longest(self.slack, change.slack))
+        dual = min(1.0, fraction * _longest(self.rates, change.rates))
+        if self.dilatancy < 1.0:
+            primal = dual = min(primal, dual)
+        return primal, dual
 
     def advance(self, change: Direction, primal: float, dual: float) -> Point:
         """The point after a step; the larger shear slack is set from y3 + y4 = 2 mu N, so that no error builds up."""
@@ -168,3 +183,8 @@ class NewtonStep:
         safe = strength > 2.0 * low
         slack[:, 2] = np.where(safe & ~first, strength - low, slack[:, 2])
         slack[:, 3] = np.where(safe & first, strength - low, slack[:, 3])
+
+
+def _longest(value: FloatArray, change: FloatArray) -> float:
+    steepest = -float((change / value).min(initial=0.0))
+    return 1.0 / steepest if steepest > 0.0 else np.inf

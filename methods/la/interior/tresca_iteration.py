@@ -18,7 +18,7 @@ from harness.model.joint_law import JointLaw
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem
-from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point, step_lengths
+from methods.la.interior.interior_point import PathResult, PathSettings, follow_path, start_point
 from methods.la.interior.newton_step import NewtonStep, Point
 from methods.numerics.failures import NumericalFailure
 
@@ -96,11 +96,11 @@ def _step(step: NewtonStep, point: Point, shift: FloatArray, mean: float) -> tup
     grown[:, 2:] = shift[:, None]
     target = mean - point.rates * grown
     predictor = step.direction(target)
-    lengths = step_lengths(point, replace(predictor, slack=predictor.slack + grown), step.tight, 1.0, 1.0)
+    lengths = step.lengths(replace(predictor, slack=predictor.slack + grown), 1.0)
     with np.errstate(over="ignore"):  # A product without bound is clipped below like any large one.
         second = (predictor.slack + grown) * predictor.rates * min(lengths)
     target = target - np.clip(second, -_CLIPPED * mean, _CLIPPED * mean)
     corrector = step.refined(step.direction(target), target)
     corrector = replace(corrector, slack=corrector.slack + grown)
-    primal, dual = step_lengths(point, corrector, step.tight, _TO_BOUNDARY, 1.0)
+    primal, dual = step.lengths(corrector, _TO_BOUNDARY)
     return step.advance(corrector, primal, dual), min(primal, dual)
