@@ -49,9 +49,19 @@ class BlockPattern:
         self.diagonal = self.place(np.arange(3 * n), np.arange(3 * n))
 
     def slot(self, unknown: IntArray) -> IntArray:
-        """(m, 36) places in the values of the products of two rows of each interface with unknowns (m, 6)."""
-        row, column = np.repeat(unknown, 6, axis=1), np.tile(unknown, (1, 6))
-        return self.place(row, column)
+        """(m, 36) places in the values of the products of two rows of each interface.
+
+        Args:
+            unknown: (m, 6) of each interface, those of its first block and those of its second.
+        """
+        own = unknown[:, ::3]
+        row, column = np.repeat(own, 2, axis=1), np.tile(own, (1, 2))
+        first = self.place(row, column)
+        down, right = self.place(row + 1, column) - first, self.place(row, column + 1) - first
+        step = np.arange(3)
+        places = (first[:, :, None, None] + step[:, None] * down[:, :, None, None]) + step * right[:, :, None, None]
+        out: IntArray = places.reshape(-1, 2, 2, 3, 3).swapaxes(2, 3).reshape(-1, 36)
+        return out
 
     def place(self, row: IntArray, column: IntArray) -> IntArray:
         """Places in the values of entries (row, column) of the tangent, which must lie in its pattern."""
