@@ -96,6 +96,7 @@ def exact_forces(
             shift = -compliance.forces(problem.strains(velocity))
             current, multiplier = _snap(problem, current + shift, tight), multiplier + change
         forces = current
+        del factor  # of a large wall, memory that the next one takes
     assert best is not None
     return best[1], best[2]
 
