@@ -13,7 +13,7 @@ from harness.model.method import Finding
 from methods.la.associated import AssociatedLimitAnalysis
 from methods.la.core.exact import close_tight
 from methods.la.core.newton_matrix import NewtonMatrix
-from methods.la.core.problem import make_problem
+from methods.la.core.problem import Problem, make_problem
 from methods.la.core.state import residuals
 from methods.la.interior.arc import ArcPath, Stepping
 from methods.la.interior.associated import EndOfPath
@@ -25,8 +25,9 @@ from methods.la.least import least_of
 from methods.la.search import LimitAnalysis
 from methods.la.settings import AssociatedSettings, SearchSettings
 from methods.la.sources import explore
-from methods.la.sources.arcs import NEAR, ArcPaths, RestoredFriction
+from methods.la.sources.arcs import NEAR, ArcPaths
 from methods.la.sources.budget import Budget, SearchLimits
+from methods.la.sources.dilatancy_continuation import DilatancyContinuation
 from methods.la.sources.search import Choices, Search, Source
 from methods.la.sources.springs import LowPrestress
 from tests.la.bodies import running_bond
@@ -55,6 +56,70 @@ def test_path_that_stays_beside_its_beginning_is_given_up() -> None:
     end = ArcPath(problem, newton, start, stepping=Stepping(trial=5, left=1e3)).follow(1e-6, 500)
     assert not end.converged
     assert end.iterations == 5
+
+
+def test_path_that_comes_back_to_its_beginning_is_given_up() -> None:
+    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
+    newton = NewtonMatrix(problem)
+    start, _ = interior_starting_point(problem, newton, 1e-2)
+    assert start is not None
+    end = ArcPath(problem, newton, start, stepping=Stepping(left=0.0, back=1e3)).follow(1e-6, 500)
+    assert not end.converged
+    assert end.iterations <= 5
+
+
+def path_from_associated_flow(problem: Problem, faded: float) -> ArcPath:
+    """A path from a point that is left early on the associated one."""
+    newton = NewtonMatrix(problem)
+    start = follow_path(problem, newton, start_point(problem), PathSettings(dilatancy=1.0, gap=0.1, residual=1e-6))
+    assert start.converged
+    return ArcPath(problem, newton, start.point, 1.0, faded)
+
+
+def test_path_leads_from_associated_flow_to_zero_dilatancy() -> None:
+    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
+    path = path_from_associated_flow(problem, 1e-3)
+    middle, end = path.follow(1e-3, 1000), path.follow(1e-6, 1000)
+    assert middle.converged
+    assert end.converged
+    assert end.gap <= 1e-6 < middle.gap <= 1e-3
+    # The strains are measured by what neither the path nor its steps compute: no slip lifts.
+    strains = problem.strains(end.point.velocities)
+    assert abs(strains[:, :2] - end.point.rates[:, :2]).max() <= Stepping().residual
+    assert end.statics <= Stepping().residual
+
+
+def test_path_does_not_arrive_before_its_dilatancy_has_faded() -> None:
+    """The gap alone would end it in associated flow, whose mechanism lifts."""
+    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
+    end = path_from_associated_flow(problem, 1e-9).follow(1e-2, 40)
+    assert end.gap <= 1e-2
+    assert not end.converged
+
+
+def test_tangent_of_the_path_is_that_of_finite_differences() -> None:
+    """Two points of the path at neighbouring tau, each found by Newton steps at a dilatancy of its own."""
+    problem = make_problem(running_bond(6, 3, 0.175, 0.65))
+    newton, tight = NewtonMatrix(problem), close_tight(problem)
+    target = np.full((problem.n_interfaces, 4), 1e-2)
+
+    def on_path(point: Point, share: float, tau: float) -> Point:
+        for _ in range(40):
+            step = NewtonStep(problem, point, share, tight).factorised(newton)
+            change = step.direction(tau * target)
+            length = min(step.lengths(change, 0.9))
+            point = step.advance(change, length, length)
+        return point
+
+    settings = PathSettings(dilatancy=1.0, gap=0.1, residual=1e-6)
+    here = on_path(follow_path(problem, newton, start_point(problem), settings).point, 0.5, 1.0)
+    growth, small = 0.2, 1e-4
+    there = on_path(here, 0.5 + growth * small, float(np.exp(small)))
+    step = NewtonStep(problem, here, 0.5, tight).factorised(newton)
+    tangent = step.direction(2.0 * target, growth).plus(-1.0, step.direction(target))
+    assert tangent.multiplier == pytest.approx((there.multiplier - here.multiplier) / small, rel=1e-2)
+    difference = (there.rates - here.rates) / small
+    assert abs(tangent.rates - difference).max() <= 1e-2 * abs(difference).max()
 
 
 def test_path_begins_with_forces_and_mechanism_of_the_true_wall() -> None:
@@ -123,7 +188,9 @@ def test_what_rests_on_a_moving_block_moves() -> None:
     assert not moves[wall.fixed].any()
 
 
-@pytest.mark.parametrize("source", [ArcPaths(least=100), RestoredFriction(least=100)], ids=lambda source: source.name)
+@pytest.mark.parametrize(
+    "source", [ArcPaths(least=100), DilatancyContinuation(least=100)], ids=lambda source: source.name
+)
 def test_search_of_the_part_that_collapses_gives_states_of_the_whole_wall(source: Source) -> None:
     # With half of the blocks some of these paths arrive with one arithmetic of a processor and not with another.
     problem = make_problem(running_bond(20, 11, 0.175, 0.65))
@@ -199,13 +266,13 @@ def test_springs_of_gravity_are_left_out_where_paths_by_arc_length_arrive_on_lar
     assert breakpoints[0] > 0 == breakpoints[1]
 
 
-def test_path_with_friction_restored_has_a_state_where_joints_press_under_the_live_load_only() -> None:
+def test_dilatancy_continuation_has_a_state_where_joints_press_under_the_live_load_only() -> None:
     """Between the openings of a facade head joints press that the dead load leaves unloaded."""
     problem = make_problem(facade(1, 4, "running", 0.6))
     search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
     explore(search, [ArcPaths(near=NEAR[1:2])])
     assert not search.record.known
-    explore(search, [RestoredFriction()])
+    explore(search, [DilatancyContinuation()])
     state = search.record.improvements[-1].state
     assert state.multiplier <= search.associated.greatest
     assert max(residuals(problem, state).values()) <= 1e-10

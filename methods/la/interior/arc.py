@@ -5,6 +5,11 @@ before it falls again. The tangent d/d(log tau) still exists, and a Newton step 
 1977). At a fold the determinant of the Newton system changes its sign, and so tells the sense of the path however
 sharply it bends. Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than
 others. Where steps across do not lead back, the path is taken up again at the last good point with half the stride.
+
+A path may also begin in associated flow, a linear programme: the dilatancy then falls with log tau from the friction
+to that of the joints. The associated path with these weights has one point for every tau, so no other point has the
+tau of the start: the path cannot come back to it, and leads to tau = 0 unless it has no bound (Eaves 1972; Allgower
+and Georg 1990). One of zero dilatancy from its start on may be a closed curve.
 """
 
 from __future__ import annotations
@@ -43,12 +48,14 @@ class Stepping:
         stride: largest relative change of a slack or rate that a step along the tangent aims at.
         trial, left: steps after which a path must have left its beginning, and the root mean square of the changes of
             the logarithms of slacks and rates that this asks for; many that have not are closed.
+        back: the same mean at which a path that had left has come back: it is closed.
         residual: scaled equilibrium and compatibility residuals at which a stretch of the path may stop.
     """
 
     stride: float = 4.0
     trial: int = 200
     left: float = 0.3
+    back: float = 0.1
     residual: float = 1e-3
 
 
@@ -79,6 +86,8 @@ class ArcPath:
         newton: its Newton matrix.
         start: a point with positive slacks and rates.
         spread: how many times greater or less than the mean a weight may be; beyond, the path passes beside the start.
+        faded: share of the tau of the start at which the dilatancy has faded to that of the joints, from the friction
+            at the start; 1 if it is that of the joints throughout.
         stepping: how it is followed.
     """
 
@@ -88,6 +97,7 @@ class ArcPath:
         newton: NewtonMatrix,
         start: Point,
         spread: float = np.inf,
+        faded: float = 1.0,
         stepping: Stepping = Stepping(),
     ) -> None:
         self._problem, self._newton, self._stepping = problem, newton, stepping
@@ -95,10 +105,12 @@ class ArcPath:
         self._stride = self._stepping.stride
         product = np.where(self._tight, 1.0, start.slack * start.rates)
         self._weights = np.clip(product / product[~self._tight].mean(), 1.0 / spread, spread)
-        self._here = _Place(start, float((product / self._weights)[~self._tight].mean()))
+        self._first, self._faded = float((product / self._weights)[~self._tight].mean()), faded
+        self._here = _Place(start, self._first)
         self._good: _Place | None = None
         self._begun: tuple[Point, float] | None = None
         self._steps = 0
+        self._has_left = False
         self._again = False
         self._astray = 0
 
@@ -115,17 +127,17 @@ class ArcPath:
         history: list[float] = []
         for iteration in range(max_iterations + 1):
             self._problem.deadline.ask()
-            point = self._here.point
+            point, share = self._here.point, self._share()
             try:
-                step = NewtonStep(self._problem, point, 0.0, self._tight).factorised(self._newton)
+                step = NewtonStep(self._problem, point, share, self._tight).factorised(self._newton)
             except (NumericalFailure, FloatingPointError):
                 break
             history.append(point.multiplier)
             present = float((point.slack * point.rates).sum()) / self._problem.live_work
             statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
-            converged = present <= gap and max(statics, kinematics) <= self._stepping.residual
+            converged = present <= gap and share == 0.0 and max(statics, kinematics) <= self._stepping.residual
             result = PathResult(point, converged, iteration, present, statics, kinematics, history)
-            if converged or present > _GONE or (self._steps == self._stepping.trial and not self._has_left()):
+            if converged or present > _GONE or (self._faded == 1.0 and self._is_closed()):
                 break
             try:
                 self._go_on(step)
@@ -135,6 +147,12 @@ class ArcPath:
         if result is None:
             raise SingularMatrix("the path could not factorise its first system")
         return result
+
+    def _share(self) -> float:
+        """How far slips lift here: from 1, by the friction, to 0, by the dilatancy of the joints."""
+        if self._faded == 1.0:
+            return 0.0
+        return float(np.clip(1.0 - np.log(self._here.tau / self._first) / np.log(self._faded), 0.0, 1.0))
 
     def _go_on(self, step: NewtonStep) -> None:
         """One step back to the path, or along it, or back to the last good point.
@@ -157,14 +175,22 @@ class ArcPath:
         sense = -step.orientation() * self._begun[1]
         self._advance(step, way, sense * min(self._stride / max(way.steepest, 1e-30), 1.0))
 
-    def _has_left(self) -> bool:
-        """Whether the path is far from where it began; one that has not been found yet is not."""
+    def _is_closed(self) -> bool:
+        """Whether the path stays where it began, has come back there, or was not found in as many steps."""
+        distance = self._distance()
+        stays = self._steps == self._stepping.trial and distance <= self._stepping.left
+        closed = stays or (self._has_left and distance <= self._stepping.back)
+        self._has_left = self._has_left or distance > self._stepping.left
+        return closed
+
+    def _distance(self) -> float:
+        """Root mean square of the changes of the logarithms of slacks and rates since the path was found."""
         if self._begun is None:
-            return False
+            return 0.0
         before, now = self._begun[0], self._here.point
         pairs = ((before.slack, now.slack), (before.rates, now.rates))
         change = [np.log(new[~self._tight] / old[~self._tight]) for old, new in pairs]
-        return float(np.sqrt((np.concatenate(change) ** 2).mean())) > self._stepping.left
+        return float(np.sqrt((np.concatenate(change) ** 2).mean()))
 
     def _take_up_again(self) -> bool:
         """Return to the last good point with half the stride, if there is one and the stride can be halved."""
@@ -183,7 +209,8 @@ class ArcPath:
         point, tau = self._here.point, self._here.tau
         target = tau * self._weights
         back = step.direction(target)
-        tangent = step.direction(2.0 * target).plus(-1.0, back)
+        growing = -1.0 / np.log(self._faded) if 0.0 < step.dilatancy < 1.0 else 0.0
+        tangent = step.direction(2.0 * target, growing).plus(-1.0, back)
         along, across = _relative(point, tangent, self._tight), _relative(point, back, self._tight)
         square = float((along**2).mean())
         growth = -float((along * across).mean()) / (square + 1.0)

@@ -94,15 +94,21 @@ class NewtonStep:
         change = (work - float(self.problem.live @ by_load)) / self.live_compliance
         return by_load + change * self.by_live, change
 
-    def direction(self, target: FloatArray) -> Direction:
-        """Newton direction towards y o g = target (m, 4)."""
+    def direction(self, target: FloatArray, more: float = 0.0) -> Direction:
+        """Newton direction towards y o g = target (m, 4), and towards a share of dilatancy greater by `more`."""
         problem, rate_shift = self.problem, self._rate_shift(target)
-        shift = problem.strains_of_rates(rate_shift, self.dilatancy) - self.kinematics
+        kinematics = self.kinematics - more * self._lifting()
+        shift = problem.strains_of_rates(rate_shift, self.dilatancy) - kinematics
         load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
         velocity, multiplier = self._bordered(load, self.work)
         strain = problem.strains(velocity)
         forces, slack = self.compliance.response(shift - strain)
-        return self._with_rates(rate_shift, forces, slack, multiplier, velocity, strain)
+        return self._with_rates(rate_shift, forces, slack, multiplier, velocity, strain + kinematics)
+
+    def _lifting(self) -> FloatArray:
+        """(m, 3) change of the strains of the rates per share of dilatancy."""
+        strains, rates = self.problem.strains_of_rates, self.point.rates
+        return strains(rates, 1.0) - strains(rates, 0.0)
 
     def refined(self, change: Direction, target: FloatArray) -> Direction:
         """A direction towards y o g = target (m, 4) with less rounding.
@@ -118,7 +124,7 @@ class NewtonStep:
         forces, slack = change.forces - less_forces, change.slack - less_slack
         multiplier = change.multiplier + more
         return self._with_rates(
-            self._rate_shift(target), forces, slack, multiplier, velocity, problem.strains(velocity)
+            self._rate_shift(target), forces, slack, multiplier, velocity, problem.strains(velocity) + self.kinematics
         )
 
     def _rate_shift(self, target: FloatArray) -> FloatArray:
@@ -136,7 +142,7 @@ class NewtonStep:
         strain: FloatArray,
     ) -> Direction:
         slack[self.tight] = 0.0
-        return Direction(forces, slack, multiplier, velocity, self._rates(rate_shift, slack, strain + self.kinematics))
+        return Direction(forces, slack, multiplier, velocity, self._rates(rate_shift, slack, strain))
 
     def _rates(self, shift: FloatArray, slack: FloatArray, strain: FloatArray) -> FloatArray:
         """Changes of the rates: from the complementarity where that is accurate, else from compatibility E dg = strain.

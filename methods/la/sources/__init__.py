@@ -7,7 +7,8 @@ from contextlib import suppress
 from dataclasses import replace
 
 from harness.model.assembly import FloatArray
-from methods.la.sources.arcs import FAR, ArcPaths, RestoredFriction
+from methods.la.sources.arcs import FAR, ArcPaths
+from methods.la.sources.dilatancy_continuation import DilatancyContinuation
 from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.mechanisms import GivenMechanisms, JoinedBlocks, SingleBlocks
 from methods.la.sources.paths import AssociatedForces, CentralPath, OtherWeights, ReducedFriction, TrescaMechanisms
@@ -22,7 +23,7 @@ SOURCES: tuple[Source, ...] = (
     ReducedFriction(factors=(0.6, 0.0), most=2000),
     ReducedFriction(factors=(0.6,), least=2001),
     ArcPaths(),
-    RestoredFriction(),
+    DilatancyContinuation(),
     LowPrestress(least=2001),
     CentralPath(most=1000),
     FrictionContinuation(),

@@ -86,53 +86,6 @@ class ArcPaths:
                     yield state
 
 
-@dataclass(frozen=True)
-class RestoredFriction:
-    """A path by arc length that leaves one of `ArcPaths` early and goes on with the friction that the wall has.
-
-    Joints that the dead load leaves unloaded may press under the live load, as those between the openings of a facade
-    do. Forces of the wall then fit no mechanism at the end of a path with part of their friction. A point of that path
-    has equilibrium and rates for any friction, and slacks only grow with it: so a path of the wall goes through it.
-
-    Attributes:
-        least: interfaces from which it is followed.
-        start: beginning of the path; those that differ from it arrive no more often.
-        leave: relative gap at which the friction is restored.
-        gaps: of the path from there, with the weights of its start, at which its mechanism is tried.
-    """
-
-    name: ClassVar[str] = "path by arc length, friction restored"
-    least: int = 1001
-    start: ArcStart = NEAR[1]
-    leave: float = 1e-2
-    gaps: tuple[float, ...] = (1e-6, 1e-8)
-
-    def applies(self, problem: Problem) -> bool:
-        """On walls too large for descents."""
-        return problem.n_interfaces >= self.least
-
-    def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state at most, where none is known."""
-        if search.associated.state is None or search.record.known:
-            return
-        state = self._end_of(search, moving_region(search.problem, search.associated.state.velocities))
-        if state is not None:
-            yield state
-
-    def _end_of(self, search: Search, region: Region) -> CollapseState | None:
-        part, most = region.problem, max(self.start.least_steps, region.problem.n_velocities // 3)
-        begun = _begun(self.start, search, region)
-        if begun is None:
-            return None
-        guide, arc = begun
-        path = arc.follow(self.leave, most)
-        search.budget.stepped(path.iterations, part.n_velocities // 3)
-        if not path.converged:
-            return None
-        point = replace(path.point, slack=part.slacks(guide.forces_of_slacks(path.point.slack)))
-        return _state_on(ArcPath(part, region.newton, point), part, self.gaps, most, search, region)
-
-
 def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseState | None:
     """The state that one path by arc length leads to."""
     begun = _begun(arc_start, search, region)

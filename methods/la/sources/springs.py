@@ -27,7 +27,8 @@ from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState, moving_contacts
 from methods.la.interior.interior_point import PathSettings, follow_path, start_point
-from methods.la.sources.arcs import ArcPaths, RestoredFriction
+from methods.la.sources.arcs import ArcPaths
+from methods.la.sources.dilatancy_continuation import DilatancyContinuation
 from methods.la.sources.friction_continuation import with_reduced_friction
 from methods.la.sources.gravity import Gravity
 from methods.la.sources.record import LEAST_IMPROVEMENT
@@ -228,9 +229,9 @@ class AnalyticCentre:
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state a path that ends; none where statics allows any load.
 
-        States of the path whose friction is restored are higher than those of springs by up to a hundredth.
+        States of the dilatancy continuation are higher than those of springs by up to a hundredth.
         """
-        known = search.record.led_to_state_but(RestoredFriction.name)
+        known = search.record.led_to_state_but(DilatancyContinuation.name)
         if not (known or search.associated.outcome == "unbounded"):
             yield from (state for _, state in _ends(search, self._starts(search)))
 
