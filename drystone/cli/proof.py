@@ -31,7 +31,14 @@ from methods.proof.verify.exact_wall import CertificateError
     default=120.0,
     callback=finite,
     show_default=True,
-    help="Limit for the multiplier intervals.",
+    help="Limit for the multiplier intervals: CPU time, with several processes elapsed time.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="Processes that work on divided states side by side.",
 )
 @click.option("--effort", type=OneOf(["quick", "normal", "deep"]), default="normal", help="Of the search.")
 @cases_option
@@ -41,6 +48,7 @@ def bound(
     output: Path,
     nodes: int | None,
     seconds: float,
+    jobs: int,
     effort: Literal["quick", "normal", "deep"],
     folders: tuple[Path, ...],
 ) -> None:
@@ -71,7 +79,7 @@ def bound(
     if found.assembly.support_motion.any():
         raise InputError("some supports move", "Leave settlements out: certificates are of supports at rest", case)
     search = SearchSettings(effort=effort)
-    attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True))
+    attempt = find_certificate(found.assembly, seconds, search, nodes, lambda sentence: say(sentence, err=True), jobs)
     if attempt.document is None:
         say(f"No certificate. {attempt.sentence}", err=True)
         sys.exit(1)

@@ -22,7 +22,7 @@ from methods.la.methods import LA_BOUND
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.budget import Sizes
 from methods.la.sources.search import Search
-from methods.proof.search.options import PROVED
+from methods.proof.search.options import PROVED, ProofOptions
 from methods.proof.search.window_search import Bracket
 from methods.proof.tree.certificate import tree_certificate
 
@@ -83,15 +83,17 @@ def find_certificate(
     search: SearchSettings,
     nodes: int | None = None,
     say_before: Callable[[str], None] = lambda sentence: None,
+    jobs: int = 1,
 ) -> _Attempt:
     """The certificate of the tree where that ends, else of windows.
 
     Args:
         assembly: a wall of one component.
-        seconds: of CPU time for the windows.
+        seconds: of CPU time for the windows; of elapsed time with several processes.
         search: of the state below which the windows lie.
         nodes: of the tree at most; None as many as `la` takes, which are none on walls where hardly any ends.
         say_before: called with what is known of the bound of such walls, before time is spent on it.
+        jobs: processes that work on the parts of divided states.
     """
     problem = make_problem(assembly)
     most = Sizes().limits(search.effort, problem).nodes if nodes is None else nodes
@@ -108,8 +110,8 @@ def find_certificate(
     if problem.n_interfaces > _LOOSE:
         say_before(
             f"The wall has {problem.n_interfaces} interfaces: above {_LOOSE} the bound after some minutes "
-            f"lies well below the least state known. The search for that state comes first, then {seconds:g} s of CPU "
-            "time for the bound."
+            f"lies well below the least state known. The search for that state comes first, then {seconds:g} s"
+            f"{_of_time(jobs)} for the bound."
         )
     known = least_known(problem, newton, search, LA_BOUND.tolerance)
     if known.status is not Status.OK or known.finding is not Finding.COLLAPSES or known.multiplier is None:
@@ -120,9 +122,10 @@ def find_certificate(
         document = certificate(assembly, most, mechanism=known.mechanism)
         if document is not None:
             return _Attempt(document)
-    began = time.process_time()
-    found, document = certified_bracket(problem, known.multiplier, known.mechanism, seconds)
-    return _Attempt(document, account(problem, known.multiplier, found, document, time.process_time() - began))
+    clock = ProofOptions(jobs=jobs).clock
+    began = clock()
+    found, document = certified_bracket(problem, known.multiplier, known.mechanism, seconds, jobs)
+    return _Attempt(document, account(problem, known.multiplier, found, document, clock() - began, jobs))
 
 
 def beyond(problem: Problem, most: int) -> str:
@@ -136,13 +139,14 @@ def beyond(problem: Problem, most: int) -> str:
 
 
 def account(
-    problem: Problem, multiplier: float, found: Bracket, document: dict[str, Any] | None, seconds: float
+    problem: Problem, multiplier: float, found: Bracket, document: dict[str, Any] | None, seconds: float, jobs: int = 1
 ) -> str:
     """How far a bracket came in floating point and in fractions, and why it ended; empty where its end is certified.
 
     Args:
         problem: the scaled wall; multiplier: of the state; found: its bracket; document: of its certificate.
-        seconds: of CPU time that were spent.
+        seconds: that were spent, of CPU time; of elapsed time with several processes.
+        jobs: number of processes.
     """
     proved = float(Fraction(document["bound"])) if document is not None else 0.0
     if proved >= multiplier * (1.0 - PROVED):
@@ -155,6 +159,10 @@ def account(
     if not reasons:
         reasons = ["exact arithmetic gives a lower bound of some subproblem than floating point"]
     return (
-        f"After {seconds:.1f} s of CPU time the bound is {in_floats}, {in_fractions}; "
+        f"After {seconds:.1f} s{_of_time(jobs)} the bound is {in_floats}, {in_fractions}; "
         f"the least state known is {multiplier:.7g}. Reasons: {'; '.join(reasons)}."
     )
+
+
+def _of_time(jobs: int) -> str:
+    return " of CPU time" if jobs == 1 else f" of {jobs} processes"

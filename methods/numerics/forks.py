@@ -8,7 +8,7 @@ import pickle
 import select
 import signal
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, NoReturn, TypeVar
 
 from harness.model.deadline import Deadline
@@ -82,8 +82,10 @@ def _answer(call: Callable[[], Any], place: int, seconds: float) -> NoReturn:
         os._exit(code)
 
 
-def in_forks(calls: Sequence[Callable[[], T]], processes: int) -> Iterator[tuple[int, T]]:
+def in_forks(calls: Iterable[Callable[[], T]], processes: int) -> Iterator[tuple[int, T]]:
     """Numbers and results of calls as they end, each made in a fork of this process, at most so many at a time.
+
+    Calls are asked for one by one, each when a process is free.
 
     A deadline is asked for in the forks, whose calls may say how far they came, and here when all that were begun have
     ended; none is begun after it. The alarm behind it rings in the forks too.

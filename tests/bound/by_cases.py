@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -40,22 +39,24 @@ def in_cases(
     seconds: float = np.inf,
     certify: Certify | None = None,
     kind: type[Short] = Short,
+    jobs: int = 1,
 ) -> Bracket:
-    """The bracket of one window and, from there, of cases of contacts only."""
-    equations, until = equations_of(problem), time.process_time() + seconds
+    """The bracket of one window and, from there, of cases of contacts only, by so many processes."""
+    equations = equations_of(problem, jobs)
+    until = equations.options.clock() + seconds
     root = kind(equations, SlackProgramme(equations), Bracket(0.0, upper), until, certify)
     root.window()
     branched(root)
     return root.found
 
 
-def certificate_of_cases(wall: Assembly, kind: type[Short] = Short) -> dict[str, Any]:
+def certificate_of_cases(wall: Assembly, kind: type[Short] = Short, jobs: int = 1) -> dict[str, Any]:
     """The certificate of a bracket below the least state known."""
     problem, known = make_problem(wall), LimitAnalysis().solve(wall, SearchSettings())
     certifier, multiplier = certifier_of(problem), known.multiplier
     assert multiplier is not None
     assert known.mechanism is not None
-    in_cases(problem, multiplier / problem.unit_multiplier, certify=certifier, kind=kind)
+    in_cases(problem, multiplier / problem.unit_multiplier, certify=certifier, kind=kind, jobs=jobs)
     document = certificate_of(problem, multiplier, known.mechanism, certifier)
     assert document is not None
     assert "cases" in document

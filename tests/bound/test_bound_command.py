@@ -36,6 +36,13 @@ def test_a_bound_without_time_says_so_and_writes_nothing(tmp_path: Path) -> None
     assert Stop.TIME in answer.output
 
 
+def test_a_bound_by_two_processes_says_that_its_seconds_are_of_both(tmp_path: Path) -> None:
+    wall = wall_data(running_bond(4, 3), 0.65)
+    answer, _ = bound(tmp_path, wall, "--seconds", "0", "--effort", "quick", "--nodes", "1", "--jobs", "2")
+    assert answer.exit_code == 1
+    assert "s of 2 processes the bound is still at zero" in answer.output
+
+
 def test_a_wall_that_no_live_load_moves_has_no_bound_and_is_told_why(tmp_path: Path) -> None:
     wall = wall_data(stack(3), 0.5, loads={"live": {"body": [{"per_weight": [0, -1]}]}})
     answer, output = bound(tmp_path, wall)

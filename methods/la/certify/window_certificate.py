@@ -13,6 +13,7 @@ from methods.la.core.state import moving_contacts
 from methods.proof.search.bracket import bracket
 from methods.proof.search.certifier import Certifier
 from methods.proof.search.equations import Equations
+from methods.proof.search.options import ProofOptions
 from methods.proof.search.window_document import Scales
 from methods.proof.search.window_search import Bracket
 from methods.proof.tree.certificate import Fractions, exact_state, wall_document
@@ -21,13 +22,13 @@ from methods.proof.verify.document import digest
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 
 
-def equations_of(problem: Problem) -> Equations:
-    """The equations of a problem as the bound takes them."""
-    return Equations(problem.kinematic, problem.dead, problem.live, problem.friction)
+def equations_of(problem: Problem, jobs: int = 1) -> Equations:
+    """The equations of a problem as the bound takes them, for so many processes."""
+    return Equations(problem.kinematic, problem.dead, problem.live, problem.friction, ProofOptions(jobs=jobs))
 
 
 def certified_bracket(
-    problem: Problem, multiplier: float, mechanism: FloatArray, seconds: float
+    problem: Problem, multiplier: float, mechanism: FloatArray, seconds: float, jobs: int = 1
 ) -> tuple[Bracket, dict[str, Any] | None]:
     """The scaled bracket below a collapse state, and its certificate; None where nothing is proved.
 
@@ -37,11 +38,12 @@ def certified_bracket(
         problem: a wall of one component, which stands under its dead load.
         multiplier: of the state, above zero.
         mechanism: (n_blocks, 3) velocities of the state.
-        seconds: of CPU time.
+        seconds: of CPU time; of elapsed time with several processes.
+        jobs: processes that work on the parts of divided states.
     """
     certifier = certifier_of(problem)
     upper = multiplier / problem.unit_multiplier
-    found = bracket(equations_of(problem), upper, seconds, certify=certifier)
+    found = bracket(equations_of(problem, jobs), upper, seconds, certify=certifier)
     found.refused = certifier.refused
     return found, certificate_of(problem, multiplier, mechanism, certifier)
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 CLOSED = 1e-6
@@ -79,8 +80,14 @@ class ProofOptions:
 
     Attributes:
         size, multiplier: steps of the splitting for the size of mechanisms and for the multiplier.
+        jobs: processes that work on the parts of divided states.
     """
 
     rounding: Rounding = Rounding()
     size: Steps = Steps(25.0, 2.5, 2.5e4, kept=False)
     multiplier: Steps = Steps(1e3, 1e2, 1e5, kept=True)
+    jobs: int = 1
+
+    def clock(self) -> float:
+        """Seconds of CPU time, or of elapsed time where several processes share it."""
+        return time.process_time() if self.jobs == 1 else time.perf_counter()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -67,6 +66,7 @@ class Stop(StrEnum):
 
     TIME = "the time was over"
     SIZE = "the time was over before the size of the mechanisms of a window was bounded"
+    LOST = "a process that worked on a part of the states ended without a result"
     DECIDED = "the states with the least bound have no contact left at which to divide them"
 
 
@@ -143,7 +143,7 @@ class WindowSearch:
         self._rates: RateProgramme | None = None
         self._made_by: Division | None = None
         self._made_at = found.lower
-        self._began = time.process_time()
+        self._began = equations.options.clock()
         self._runs: dict[str, Splitting] = {}
         self._relaxation: Relaxation | None = None
         self._slow = False
@@ -174,6 +174,13 @@ class WindowSearch:
             parts.append(part)
         return parts
 
+    def become(self, after: WindowSearch) -> None:
+        """Stand where a copy of this search came to. What certifies it stays the same object, which others hold."""
+        certify = self._certify
+        if certify is not None:
+            vars(certify).update(vars(after._certify))
+        vars(self).update(vars(after) | {"_certify": certify})
+
     def division(self) -> Division | None:
         """Where the states of this search are best divided; None if every contact is decided."""
         gained = self.found.lower - self._made_at > _WORTH * (self.found.upper - self._made_at)
@@ -203,7 +210,7 @@ class WindowSearch:
     def _build(self) -> bool:
         """Build the relaxation of the present bracket; False if no state is left in it that is not bounded."""
         found, high = self.found, self.found.upper * (1.0 + _ABOVE)
-        self._gaps = [(time.process_time(), found.upper - found.lower)]
+        self._gaps = [(self.equations.options.clock(), found.upper - found.lower)]
         bounds = self._slack_bounds(high, self.case)
         if bounds is not None and self._rates is not None:
             bounds = self._tightened(self._rates, high, bounds)
@@ -260,7 +267,7 @@ class WindowSearch:
 
     def _bound_size(self) -> None:
         """Bound the size of this window's mechanisms, to within `Windows.size` times the relaxation's own value."""
-        spent = time.process_time() - self._began
+        spent = self.equations.options.clock() - self._began
 
         def stop(bound: DualBound | None, primal: float) -> bool:
             if bound is None:
@@ -303,7 +310,7 @@ class WindowSearch:
 
     def _gains(self, gap: float) -> bool:
         """Whether the gap of the bracket, now this, has lost `Windows.gain` in the last half of the window's time."""
-        now = time.process_time()
+        now = self.equations.options.clock()
         self._gaps.append((now, gap))
         half = 0.5 * (self._gaps[0][0] + now)
         earlier = next(gap for when, gap in reversed(self._gaps) if when <= half)
@@ -330,5 +337,5 @@ class WindowSearch:
 
     def _run(self, name: str, seconds: float, stop: Callable[[DualBound | None, float], bool]) -> None:
         run, before = self._runs[name], self._runs[name].iterations
-        run.run(min(self.until, time.process_time() + seconds), stop)
+        run.run(min(self.until, self.equations.options.clock() + seconds), stop)
         self.found.iterations += run.iterations - before
