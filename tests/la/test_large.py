@@ -33,13 +33,18 @@ from methods.la.sources.springs import LowPrestress
 from tests.la.bodies import running_bond
 
 
-def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> None:
-    """In two stretches, as the search follows it; the second goes on in the sense of the first."""
+def path_from_pair(stepping: Stepping = Stepping()) -> ArcPath:
+    """A path from a pair of forces and mechanism of zero dilatancy."""
     problem = make_problem(running_bond(28, 16, 0.175, 0.65))
     newton = NewtonMatrix(problem)
     start, _ = interior_starting_point(problem, newton, 1e-2)
     assert start is not None
-    path = ArcPath(problem, newton, start)
+    return ArcPath(problem, newton, start, stepping=stepping)
+
+
+def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> None:
+    """In two stretches, as the search follows it; the second goes on in the sense of the first."""
+    path = path_from_pair()
     middle, end = path.follow(1e-2, 500), path.follow(1e-6, 500)
     assert middle.converged
     assert end.converged
@@ -49,21 +54,13 @@ def test_path_by_arc_length_leads_from_its_beginning_to_complementarity() -> Non
 
 
 def test_path_that_stays_beside_its_beginning_is_given_up() -> None:
-    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
-    newton = NewtonMatrix(problem)
-    start, _ = interior_starting_point(problem, newton, 1e-2)
-    assert start is not None
-    end = ArcPath(problem, newton, start, stepping=Stepping(trial=5, left=1e3)).follow(1e-6, 500)
+    end = path_from_pair(Stepping(trial=5, left=1e3)).follow(1e-6, 500)
     assert not end.converged
     assert end.iterations == 5
 
 
 def test_path_that_comes_back_to_its_beginning_is_given_up() -> None:
-    problem = make_problem(running_bond(28, 16, 0.175, 0.65))
-    newton = NewtonMatrix(problem)
-    start, _ = interior_starting_point(problem, newton, 1e-2)
-    assert start is not None
-    end = ArcPath(problem, newton, start, stepping=Stepping(left=0.0, back=1e3)).follow(1e-6, 500)
+    end = path_from_pair(Stepping(left=0.0, back=1e3)).follow(1e-6, 500)
     assert not end.converged
     assert end.iterations <= 5
 

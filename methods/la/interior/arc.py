@@ -105,7 +105,7 @@ class ArcPath:
         self._stride = self._stepping.stride
         product = np.where(self._tight, 1.0, start.slack * start.rates)
         self._weights = np.clip(product / product[~self._tight].mean(), 1.0 / spread, spread)
-        self._first, self._faded = float((product / self._weights)[~self._tight].mean()), faded
+        self._first, self._fall = float((product / self._weights)[~self._tight].mean()), -float(np.log(faded))
         self._here = _Place(start, self._first)
         self._good: _Place | None = None
         self._begun: tuple[Point, float] | None = None
@@ -137,7 +137,7 @@ class ArcPath:
             statics, kinematics = float(abs(step.statics).max()), float(abs(step.kinematics).max())
             converged = present <= gap and share == 0.0 and max(statics, kinematics) <= self._stepping.residual
             result = PathResult(point, converged, iteration, present, statics, kinematics, history)
-            if converged or present > _GONE or (self._faded == 1.0 and self._is_closed()):
+            if converged or present > _GONE or (not self._fall and self._is_closed()):
                 break
             try:
                 self._go_on(step)
@@ -150,9 +150,9 @@ class ArcPath:
 
     def _share(self) -> float:
         """How far slips lift here: from 1, by the friction, to 0, by the dilatancy of the joints."""
-        if self._faded == 1.0:
+        if not self._fall:
             return 0.0
-        return float(np.clip(1.0 - np.log(self._here.tau / self._first) / np.log(self._faded), 0.0, 1.0))
+        return float(np.clip(1.0 + np.log(self._here.tau / self._first) / self._fall, 0.0, 1.0))
 
     def _go_on(self, step: NewtonStep) -> None:
         """One step back to the path, or along it, or back to the last good point.
@@ -209,7 +209,7 @@ class ArcPath:
         point, tau = self._here.point, self._here.tau
         target = tau * self._weights
         back = step.direction(target)
-        growing = -1.0 / np.log(self._faded) if 0.0 < step.dilatancy < 1.0 else 0.0
+        growing = 1.0 / self._fall if 0.0 < step.dilatancy < 1.0 else 0.0
         tangent = step.direction(2.0 * target, growing).plus(-1.0, back)
         along, across = _relative(point, tangent, self._tight), _relative(point, back, self._tight)
         square = float((along**2).mean())

@@ -97,7 +97,7 @@ class NewtonStep:
     def direction(self, target: FloatArray, more: float = 0.0) -> Direction:
         """Newton direction towards y o g = target (m, 4), and towards a share of dilatancy greater by `more`."""
         problem, rate_shift = self.problem, self._rate_shift(target)
-        kinematics = self.kinematics - more * self._lifting()
+        kinematics = self.kinematics - more * self._lifting() if more else self.kinematics
         shift = problem.strains_of_rates(rate_shift, self.dilatancy) - kinematics
         load = np.asarray(problem.statics @ self.compliance.forces(shift).ravel()) + self.statics
         velocity, multiplier = self._bordered(load, self.work)
