@@ -92,6 +92,7 @@ class Holds:
             return state
         if state is State.MOVING:
             self.motion, self.proof, self.fell = end.velocity, end.proof, multiplier
+            self.motion = self._followed(end)
         else:
             self.undecided.append(multiplier)
         wall.restore(self.rest)
@@ -128,6 +129,19 @@ class Holds:
                 return LoadStep(State.MOVING, residual, wall.steps - start, places - before, motion.proof)
             if over:
                 return LoadStep(State.UNDECIDED, residual, wall.steps - start, places - before)
+
+    def _followed(self, fall: LoadStep) -> FloatArray:
+        """Displacements (n, 3) of a fall for as long again as it took to show, until a block has gone the `reach`.
+
+        What comes before is in part what joints give while forces pass from one to another: blocks seem to penetrate.
+        Where the fall was shown by how far it went, its displacements are those until then.
+        """
+        wall, shown = self.wall, self.wall.places.copy()
+        reach, end = self.settings.reach * wall.assembly.length_scale, wall.steps + fall.steps
+        while wall.steps < end and float(np.abs((wall.places - self.rest[0])[:, :2]).max()) < reach:
+            Deadline.of_run().ask()
+            wall.advance(LOOK)
+        return fall.velocity if np.array_equal(wall.places, shown) else wall.places - shown
 
 
 class DeformableJoints(Solver):
