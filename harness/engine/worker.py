@@ -7,7 +7,6 @@ fork server, so it imports what every method needs and nothing that starts threa
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import json
 import math
 import multiprocessing
@@ -37,6 +36,7 @@ from harness.model.foreign.program_method import method_of, running_in
 from harness.model.foreign.register import Program
 from harness.model.method import Answer, Finding, Method, Settings, Status, Traits, allowing
 from harness.model.method_registry import check_takes, load_method, prepared
+from harness.model.orphans import end_with_parent
 from harness.model.reading import validate
 
 _LAST_WORDS = (0.05, 5.0)
@@ -307,8 +307,7 @@ def _die_with_engine() -> None:
     The fork server cannot tell: it lives as long as any process that holds its pipe, and this one does. Should it be
     killed itself, the kernel ends this process (Linux; elsewhere the wall limit must do).
     """
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(1, int(signal.SIGKILL))
+    end_with_parent()
     engine = multiprocessing.parent_process()
     if engine is None:
         return

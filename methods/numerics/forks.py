@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, NoReturn, TypeVar
 
 from harness.model.deadline import Deadline
+from harness.model.orphans import end_with_parent
 
 T = TypeVar("T")
 
@@ -25,8 +26,12 @@ class _Fork(Generic[T]):
 
     def __init__(self, call: Callable[[], T], seconds: float) -> None:
         self.place, theirs = os.pipe()
+        parent = os.getpid()
         self.pid = os.fork()
         if self.pid == 0:
+            end_with_parent()
+            if os.getppid() != parent:  # which ended before the kernel was told
+                os._exit(1)
             os.close(self.place)
             _answer(call, theirs, seconds)
         os.close(theirs)
