@@ -38,11 +38,11 @@ _REPORT = Path("out/report.html")
 _REMEDIES = {
     errno.EMFILE: "Raise the limit on open files of this process (ulimit -n) to 64 or more",
     errno.ENFILE: "End other programs: the machine has reached its limit of open files",
-    errno.ENOSPC: "Free room on the disk and repeat the command: finished runs are kept",
-    errno.EDQUOT: "Free room in your quota and repeat the command: finished runs are kept",
-    errno.EFBIG: "Raise the limit on file sizes (ulimit -f) and repeat the command: finished runs are kept",
-    errno.ENOMEM: "Give fewer --jobs, or end other programs: finished runs are kept",
-    errno.EAGAIN: "Give fewer --jobs: the machine allows no more processes (ulimit -u); finished runs are kept",
+    errno.ENOSPC: "Free room on the disk and repeat the command",
+    errno.EDQUOT: "Free room in your quota and repeat the command",
+    errno.EFBIG: "Raise the limit on file sizes (ulimit -f) and repeat the command",
+    errno.ENOMEM: "Give fewer --jobs, or end other programs",
+    errno.EAGAIN: "Give fewer --jobs: the machine allows no more processes (ulimit -u)",
 }
 """What can be done about errors of the operating system."""
 
@@ -90,16 +90,22 @@ def catching(command: Callable[..., Any]) -> Callable[..., Any]:
             say(f"drystone: {error}", err=True)
             sys.exit(INPUT_ERROR)
         except KeyboardInterrupt:
-            click.echo("drystone: interrupted; finished runs are kept where there is a store (--store)", err=True)
+            say(f"drystone: interrupted{_kept()}", err=True)
             sys.exit(_INTERRUPTED)
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(0)
         except OSError as error:
-            say(f"drystone: {_of_the_system(error)}", err=True)
+            say(f"drystone: {_of_the_system(error)}{_kept()}", err=True)
             sys.exit(INPUT_ERROR)
 
     return wrapped
+
+
+def _kept() -> str:
+    """What a command that did not come to its end leaves behind, as the end of a sentence; empty without a store."""
+    store = click.get_current_context().params.get("store")
+    return "" if store is None else f"; finished runs are kept in {store}"
 
 
 def say(text: str, *, err: bool = False) -> None:

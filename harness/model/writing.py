@@ -74,9 +74,15 @@ def write_whole(path: Path, content: str | bytes) -> None:
     Args:
         path: the file.
         content: its text, written as UTF-8, or its bytes.
+
+    Raises:
+        OSError: it does not fit, or as `replacing`; with the name of the file.
     """
-    with replacing(path) as draft:
-        draft.write_bytes(content.encode() if isinstance(content, str) else content)
+    try:
+        with replacing(path) as draft:
+            draft.write_bytes(content.encode() if isinstance(content, str) else content)
+    except OSError as error:  # of a write it has no name, and of the draft one that nobody knows
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def cell(value: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from pathlib import Path
 from typing import Any
@@ -41,6 +42,30 @@ def test_a_bound_by_two_processes_says_that_its_seconds_are_of_both(tmp_path: Pa
     answer, _ = bound(tmp_path, wall, "--seconds", "0", "--effort", "quick", "--nodes", "1", "--jobs", "2")
     assert answer.exit_code == 1
     assert "s of 2 processes the bound is still at zero" in answer.output
+
+
+def test_a_certificate_that_cannot_be_written_is_told_with_its_file_and_no_run_is_called_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No store is an option of `drystone bound`."""
+
+    def full(*arguments: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("pathlib.Path.write_bytes", full)
+        answer, output = bound(tmp_path, wall_data(stack(2), 0.5))
+    assert (answer.exit_code, output.exists()) == (2, False)
+    assert f"{output}: No space left on device. Free room" in answer.output
+    assert "kept" not in answer.output
+    assert list(tmp_path.glob(".certificate*")) == []
+
+    def interrupted(*arguments: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("methods.la.find_certificate.find_certificate", interrupted)
+    answer, output = bound(tmp_path, wall_data(stack(2), 0.5))
+    assert (answer.exit_code, answer.output) == (130, "drystone: interrupted\n")
 
 
 def test_a_wall_that_no_live_load_moves_has_no_bound_and_is_told_why(tmp_path: Path) -> None:

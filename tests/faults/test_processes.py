@@ -207,6 +207,7 @@ def test_a_full_disk_is_told_and_keeps_what_is_finished(wall: Path):
     )
     assert done.returncode == 2, done.stderr
     assert "No space left" in done.stderr or "disk is full" in done.stderr
+    assert "finished runs are kept" in done.stderr
     assert (wall.parent / "kept" / "drystone.sqlite").exists()
     again = drystone(
         "compare", wall, "--methods", "la", "--store", wall.parent / "kept" / "drystone.sqlite", cwd=wall.parent
