@@ -116,10 +116,11 @@ def dead_load_answer(problem: Problem, newton: NewtonMatrix, has_live_load: bool
 
 def falls_answer(assembly: Assembly, motion: FloatArray) -> Answer:
     """Falls under its dead load, by a dilatant mechanism (n, 3) on which the dead load does positive work."""
+    number = moving_blocks(assembly, motion)
     return Answer(
         Status.OK,
         Finding.FALLS,
-        f"The wall falls under its dead load by a mechanism of {moving_blocks(assembly, motion)} blocks: "
+        f"The wall falls under its dead load by a mechanism of {number} {'block' if number == 1 else 'blocks'}: "
         "no equilibrium within yield exists, whatever the flow rule.",
         mechanism=motion,
         flow="associated",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from harness.model.method import Answer, Finding, Status
-from methods.la.answers import moving_blocks
+from methods.la.answers import falls_answer, moving_blocks
 from methods.la.bounds import bounded, certified, with_bound
 from methods.la.certify.proof import TreeProof
 from methods.la.core.exact import close_tight, exact_forces
@@ -344,3 +344,11 @@ def test_the_associated_maximum_is_found_by_the_solver_asked_for_or_by_size() ->
     ):
         found = solve_associated(problem, newton, solver, EndOfPath(above=above))
         assert (found.iterations == ended.iterations) is by_path, (solver, above)
+
+
+@pytest.mark.parametrize(("count", "said"), [(1, "a mechanism of 1 block:"), (2, "a mechanism of 2 blocks:")])
+def test_a_fall_is_told_with_the_number_of_blocks_that_move(count: int, said: str) -> None:
+    wall = block_on_halves()
+    motion = np.zeros((wall.n_blocks, 3))
+    motion[:count, 1] = -1.0
+    assert said in falls_answer(wall, motion).sentence
