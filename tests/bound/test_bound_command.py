@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 import json
+import math
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from drystone.cli.main import main as drystone
+from harness.model.proof import in_words
 from methods.la.certify.window_certificate import equations_of
 from methods.la.core.problem import make_problem
 from methods.la.find_certificate import account
@@ -66,6 +69,16 @@ def test_a_certificate_that_cannot_be_written_is_told_with_its_file_and_no_run_i
     monkeypatch.setattr("methods.la.find_certificate.find_certificate", interrupted)
     answer, output = bound(tmp_path, wall_data(stack(2), 0.5))
     assert (answer.exit_code, answer.output) == (130, "drystone: interrupted\n")
+
+
+@pytest.mark.parametrize(
+    "digits", ["311375536817721299999999999", "-311375536817721299999999999", "3000000000000000000000001"]
+)
+def test_a_state_is_not_shown_below_a_bound_that_it_is_above(digits: str) -> None:
+    state = Fraction(int(digits), 10**24)
+    bound = Fraction(math.floor(state * 10**12), 10**12)
+    assert state - Fraction(in_words(bound)) < Fraction(1, 10**12)
+    assert Fraction(in_words(bound)) <= Fraction(in_words(state)) <= state
 
 
 def test_a_wall_that_no_live_load_moves_has_no_bound_and_is_told_why(tmp_path: Path) -> None:
