@@ -101,6 +101,18 @@ def test_sweep_tells_the_doubts_of_walls_as_they_vary_each_kind_once(tmp_path: P
     assert json.loads(command(*asked, "--dry-run", cwd=tmp_path).stdout)["warnings"] == told
 
 
+def test_sweep_says_of_a_quantity_that_nothing_depends_on_that_it_varies_in_vain(tmp_path: Path):
+    """The same multiplier was listed at every friction of a wall whose joints have their own, without a word."""
+    path = wall(tmp_path, unit_weight=20, loads=PUSH)
+    asked = ["sweep", "--vary", "friction=0.3,0.5", "--vary", "unit_weight=18,20", "--dry-run", "--json"]
+    assert json.loads(command(*asked, path, cwd=tmp_path).stdout)["warnings"] == []
+    described = json.loads(command("expand", path).stdout)
+    path.write_text(json.dumps(described), encoding="utf-8")
+    told = json.loads(command(*asked, path, cwd=tmp_path).stdout)["warnings"]
+    vain = "varies, and no block, joint or load depends on it"  # blocks of an explicit wall have their own weight, too
+    assert [sentence[: sentence.index(vain) - 1] for sentence in told] == ["friction", "unit_weight"]
+
+
 def test_sweep_says_why_no_run_has_an_answer(tmp_path: Path):
     """Of a wall without a support nine runs were refused, and the exit code was that of an answer."""
     path = wall(tmp_path, unit_weight=20, loads=PUSH)

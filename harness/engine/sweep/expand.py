@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import math
+import pickle
 from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -80,7 +82,29 @@ def warnings_of(sources: Iterable[WallSource], runs: Sequence[SweepRun]) -> dict
                 varied[kind] = (first, name, count + 1)
     for sentence, name, count in varied.values():
         told[f"{sentence} (and {count - 1:,} more walls)" if count > 1 else sentence] = name
-    return told
+    return told | _in_vain([run.variant for run in runs])
+
+
+def _in_vain(variants: Iterable[_WallVariant]) -> dict[str, str]:
+    """A sentence on each quantity that varies and that no block, joint or load depends on, with the name of the wall.
+
+    Walls whose other quantities are equal tell; there is nothing to tell of those that cannot be built.
+    """
+    alike: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
+    for variant in {variant.content: variant for variant in variants}.values():
+        try:
+            numbers = pickle.dumps(replace(variant.assembly, name=""))
+        except InputError:
+            continue
+        for name, value in variant.values.items():
+            others = json.dumps([sorted((k, v) for k, v in variant.values.items() if k != name), variant.draw])
+            walls = alike.setdefault((variant.id, name), {}).setdefault(others, {})
+            walls[json.dumps(value)] = hashlib.sha256(numbers).hexdigest()
+    return {
+        f"{name} varies, and no block, joint or load depends on it: joints may have values of their own": wall
+        for (wall, name), walls in alike.items()
+        if max(map(len, walls.values())) > 1 and all(len(set(each.values())) == 1 for each in walls.values())
+    }
 
 
 @dataclass(frozen=True, eq=False)
