@@ -202,6 +202,9 @@ class OutputFile(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path."""
+        given = os.fsdecode(value)
+        if not os.path.basename(given):
+            self.fail(f'"{given}" names no file. Give the name of a file', param, ctx)
         path = super().convert(value, param, ctx)
         try:
             check_output(Path(os.fsdecode(path)))

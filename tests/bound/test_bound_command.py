@@ -71,6 +71,16 @@ def test_a_certificate_that_cannot_be_written_is_told_with_its_file_and_no_run_i
     assert (answer.exit_code, answer.output) == (130, "drystone: interrupted\n")
 
 
+@pytest.mark.parametrize("output", ["", "new/"])
+def test_an_output_that_names_no_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, output: str) -> None:
+    """A certificate was written to a file `new` for one who meant a folder."""
+    monkeypatch.chdir(tmp_path)
+    answer = CliRunner().invoke(drystone, ["bound", "slide", "-o", output])
+    assert answer.exit_code == 2
+    assert f'"{output}" names no file. Give the name of a file' in answer.output
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     "digits", ["311375536817721299999999999", "-311375536817721299999999999", "3000000000000000000000001"]
 )
