@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import sqlite3
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -159,3 +161,15 @@ def test_a_wrong_file_is_named_with_what_is_wrong_and_what_would_be_right_and_no
         assert done.exit_code == 2, (name, done.output)
         assert f"drystone: {name}: {said}" in done.output
         assert {each.name: each.stat().st_size for each in wall.parent.iterdir()} == before
+
+
+def test_a_reader_who_goes_before_the_end_of_a_table_is_no_failure(wall: Path):
+    """`drystone compare WALL | head` ended with the exit code of a reference that is not met."""
+    words = [sys.executable, "-m", "drystone.cli.main", "compare", str(wall), "--methods", "la-associated"]
+    with subprocess.Popen(words, cwd=wall.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        assert process.stderr is not None
+        said = process.stderr.read().decode()
+    assert process.returncode == 0, said
+    assert "Traceback" not in said
