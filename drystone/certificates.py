@@ -99,8 +99,7 @@ def write_certificate(path: Path, document: dict[str, Any]) -> None:
 
 def proved(document: Any) -> str:
     """What a certificate that holds proves, as the main clause of a sentence: of a multiplier only with its state."""
-    least = "no collapse state lies from zero to below" if "windows" in document else "no collapse state lies below"
-    least = f"{least} {in_words(number(document['bound']))}"
+    least = f"no collapse state lies from zero to below {in_words(number(document['bound']))}"
     if "state" not in document:
         return f"{least}, proved in fractions"
     return f"{least}, and one at {in_words(number(document['multiplier']))}, proved in fractions"
@@ -123,7 +122,7 @@ def _checked(document: Any, assembly: Assembly, source: str, seconds: float = SE
     if not isinstance(document, dict):
         raise CertificateError("it is no certificate as `drystone bound` writes them")
     require_same_wall(document, assembly)
-    return Certified(_not_above(verify(document, seconds)[0]), proved(document), source, "windows" in document)
+    return Certified(_not_above(verify(document, seconds)[0]), proved(document), source)
 
 
 def _of_results(item: CaseResults, seconds: float) -> tuple[list[Certified], dict[str, str]]:
@@ -265,10 +264,9 @@ def certified_results(case: Case, result: Result, seconds: float = 60.0) -> Case
 
 
 def is_below(result: Result, certified: Certified) -> bool:
-    """Whether a multiplier is one that the certificate excludes; windows say nothing of those below zero."""
+    """Whether a multiplier is one that the certificate excludes; it says nothing of those below zero."""
     value, bound = result.multiplier, certified.bound
-    excluded = value is not None and value < bound - ROUNDING * abs(bound)
-    return excluded and not (certified.from_zero and value is not None and value < 0.0)
+    return value is not None and 0.0 <= value < bound - ROUNDING * abs(bound)
 
 
 def _not_above(bound: Fraction) -> float:

@@ -40,13 +40,11 @@ class Certified:
         bound: no collapse state lies from zero to below this multiplier.
         sentence: what is proved, in words.
         source: name of the file.
-        from_zero: whether it says nothing of multipliers below zero, as windows do.
     """
 
     bound: float
     sentence: str
     source: str
-    from_zero: bool = False
 
 
 def refusal(method: str, why: str) -> str:

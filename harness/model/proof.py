@@ -162,7 +162,7 @@ def proof_of(item: CaseResults, result: Result) -> Proof:
 def _certified_bound(item: CaseResults, value: float, least: float) -> float | None:
     """What a certificate proves below a state of this value; None where it says nothing of it or is contradicted."""
     known = item.certified
-    if known is None or known.bound > value or (known.from_zero and value <= 0.0):
+    if known is None or known.bound > value or value <= 0.0:
         return None
     return None if known.bound - least > _CERTIFIED * abs(known.bound) else known.bound
 

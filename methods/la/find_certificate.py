@@ -52,7 +52,8 @@ def certificate(
     proof = prove(search, known, nodes)
     if not proof.complete:
         return None
-    return tree_certificate(assembly, problem.unit_force, proof.state.moving, proof.leaves, end)
+    least = proof.state.multiplier * problem.unit_multiplier, proof.state.moving
+    return tree_certificate(assembly, problem.unit_force, least, proof.leaves, end)
 
 
 def _state_of(search: Search, mechanism: FloatArray) -> CollapseState | None:

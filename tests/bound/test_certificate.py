@@ -147,3 +147,14 @@ def test_the_bound_hands_over_a_certificate_and_says_so() -> None:
     hurried = BoundedLimitAnalysis().solve(wall, BoundSettings(bound_seconds=1e-9))
     assert "certificate" not in hurried.details
     assert "proved in fractions" not in hurried.sentence
+
+
+def test_symmetrical_hinges_that_are_none_in_fractions_are_proved_all_the_same() -> None:
+    """Vertices of leaves contradict themselves by 1e-15; least by a linear programme (tests/cases/test_thrusts.py)."""
+    wall = read_case(shipped_cases() / "arch-thrust-least").assembly
+    document = certificate(wall)
+    assert document is not None
+    lower, upper = verify(document)
+    assert upper is not None
+    assert 0 < upper - lower <= Fraction(2, 10**6) * upper
+    assert float(upper) == pytest.approx(0.0457551613, abs=2e-10)

@@ -78,12 +78,16 @@ def test_forces_against_a_rate_need_it_to_be_zero():
         ((0, 1, 0), 5, PRESSING, ""),  # nothing presses, and the weight is borne by nothing
         ((0, 1, 0), 5, PRESSING[1:], "gain work"),
         ((0, -1, 0), 5, PRESSING, "exclude nothing"),
-        ((1, 0, 0), 0, ROOT, ""),  # without forces no multiplier is below zero
+        ((-1, 1, 0), 5, PRESSING, ""),  # the live load may lose work: nothing is said of multipliers below zero
+        ((1, 1, 0), 5, PRESSING, "exclude nothing"),
+        ((1, 0, 0), 0, ROOT, "exclude nothing"),
         ((1, 0, 0), Fraction(1, 10), ROOT, "exclude nothing"),
         ((-1, 0, 0), 0, ROOT, "exclude nothing"),
     ],
 )
-def test_velocities_may_do_work_on_one_load_alone(velocities: Any, bound: Any, tight: list[int], reason: str):
+def test_velocities_exclude_multipliers_from_zero_to_the_bound(
+    velocities: Any, bound: Any, tight: list[int], reason: str
+):
     leaf = {"tight": tight, "velocities": [str(value) for value in velocities]}
     found = checked(leaf, Fraction(bound))
     assert found == "" if not reason else reason in found

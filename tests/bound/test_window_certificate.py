@@ -121,20 +121,24 @@ def test_a_window_that_claims_more_is_refused(name: str) -> None:
 BRACKET = "ferris-tin-loi-1"
 """The library wall whose windows do not close: its certificate leaves .002 % open."""
 
+WITHOUT_STATE = {"arch-thrust-greatest": Fraction("0.0553105847"), "borri-arch-13": Fraction("0.133539189")}
+"""Library walls whose least state is none in fractions, with their references as they are rounded."""
+
 
 @pytest.mark.parametrize(
     "file",
     [pytest.param(file, id=file.parent.name, marks=[pytest.mark.slow] * (file.stat().st_size > 200_000))
      for file in sorted(shipped_cases().glob(f"*/{CERTIFICATE}{PACKED}"))],
 )  # fmt: skip
-def test_the_certificates_of_windows_of_library_walls_hold(file: Path) -> None:
+def test_the_packed_certificates_of_library_walls_hold(file: Path) -> None:
     document = read_certificate(file)
     require_same_wall(document, read_case(file.parent).assembly)
     lower, shown = verify(document)
-    upper = Fraction(document["multiplier"])
-    assert shown == (upper if "state" in document else None)
+    assert (shown is None) == (file.parent.name in WITHOUT_STATE)
+    upper = WITHOUT_STATE[file.parent.name] if shown is None else shown
     left_open = Fraction(21, 10**6) if file.parent.name == BRACKET else Fraction(2, 10**6)
-    assert 0 < upper - lower <= left_open * upper
+    rounded = Fraction(5, 10**10) if shown is None else 0
+    assert 0 < upper - lower <= left_open * upper + rounded
 
 
 @pytest.mark.slow

@@ -16,10 +16,9 @@ from methods.proof.search.equations import Equations
 from methods.proof.search.options import ProofOptions
 from methods.proof.search.window_document import Scales
 from methods.proof.search.window_search import Bracket
-from methods.proof.tree.certificate import Fractions, exact_state, wall_document
-from methods.proof.verify.checker import check_state
+from methods.proof.tree.certificate import wall_document, with_state
 from methods.proof.verify.document import digest
-from methods.proof.verify.exact_wall import CertificateError, ExactWall
+from methods.proof.verify.exact_wall import ExactWall
 
 
 def equations_of(problem: Problem, jobs: int = 1) -> Equations:
@@ -64,17 +63,11 @@ def certificate_of(
     """
     if not certifier.documents:
         return None
-    document, exact = wall_document(problem.assembly, problem.unit_force), Fraction(multiplier)
-    try:
-        rates = problem.rates_of_velocities(problem.from_mechanism(mechanism), False)
-        exact, document["state"] = exact_state(Fractions(document), moving_contacts(rates).ravel())
-        check_state(certifier.wall, exact, document["state"])
-    except (ArithmeticError, CertificateError):
-        document.pop("state", None)
+    document = wall_document(problem.assembly, problem.unit_force)
+    rates = problem.rates_of_velocities(problem.from_mechanism(mechanism), False)
+    exact, state = with_state(document, multiplier, moving_contacts(rates))
     bound = min(certifier.bound, exact)
-    if "state" in document:
-        document["multiplier"] = str(exact)
-    document |= {"bound": _short(bound, exact), "windows": certifier.documents}
+    document |= state | {"bound": _short(bound, exact), "windows": certifier.documents}
     if certifier.cases is not None:
         document["cases"] = certifier.cases.document()
     document["digest"] = digest(document)

@@ -7,7 +7,7 @@ fractions. What is written is what `methods/proof/verify/checker.py` accepts, wh
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -20,9 +20,9 @@ from methods.numerics.linear_programme import INFINITY, Programme
 from methods.numerics.vertex import BASIC
 from methods.proof.same_wall import block_sizes, interface_lengths, load_sizes, same_number
 from methods.proof.tree.sparse_fractions import DENOMINATOR, Row, solve_sparse
-from methods.proof.verify.checker import verify
+from methods.proof.verify.checker import check_state, verify
 from methods.proof.verify.document import FORMAT, digest
-from methods.proof.verify.exact_wall import CertificateError
+from methods.proof.verify.exact_wall import CertificateError, ExactWall
 
 _SHORT = 1e-13
 """Difference of a short fraction from the float that stands for it, relative to what it belongs to: a hundredth of
@@ -34,33 +34,50 @@ _BELOW = Fraction(2, 10**6)
 
 
 def tree_certificate(
-    assembly: Assembly, unit: float, moving: BoolArray, leaves: Iterable[tuple[BoolArray, BoolArray]], end: float
+    assembly: Assembly,
+    unit: float,
+    least: tuple[float, BoolArray],
+    leaves: Iterable[tuple[BoolArray, BoolArray]],
+    end: float,
 ) -> dict[str, Any] | None:
     """The certificate of a wall from what a tree has found; None where it does not exist in fractions.
 
     Args:
         assembly: the wall, whose numbers must be short fractions.
         unit: of force [force].
-        moving: (m, 4) contacts in which the least state moves.
+        least: the least state: multiplier, and (m, 4) contacts in which it moves.
         leaves: slacks held at zero and rates held at zero, (m, 4) each, of every part of the tree.
         end: CPU time of this process [s] after which no further leaf is begun, and there is no certificate.
     """
     try:
         document = wall_document(assembly, unit)
         wall = Fractions(document)
-        upper, state = exact_state(wall, moving.ravel())
+        upper, state = with_state(document, *least)
         bound = upper * (1 - _BELOW)
-        proved = []
+        proved: list[dict[str, Any]] = []
         for tight, still in leaves:
-            if time.process_time() > end:
-                return None
-            proved.append(_leaf(wall, bound, tight.ravel(), still.ravel()))
-        document |= {"multiplier": str(upper), "bound": str(bound), "state": state, "leaves": proved}
+            proved += _leaves(wall, bound, (tight.ravel(), still.ravel()), end)
+        document |= state | {"bound": str(bound), "leaves": proved}
         document["digest"] = digest(document)
         verify(document)
     except (ArithmeticError, CertificateError):
         return None
     return document
+
+
+def with_state(document: dict[str, Any], multiplier: float, moving: BoolArray) -> tuple[Fraction, dict[str, Any]]:
+    """Multiplier and state of a certificate, in fractions; where they do not exist so, the multiplier of floats alone.
+
+    Args:
+        document: the part of a certificate that says which wall it is of.
+        multiplier: of the state in floats; moving: (m, 4) contacts in which it moves.
+    """
+    try:
+        exact, state = exact_state(Fractions(document), moving.ravel())
+        check_state(ExactWall(document), exact, state)
+    except (ArithmeticError, CertificateError):
+        return Fraction(multiplier), {}
+    return exact, {"multiplier": str(exact), "state": state}
 
 
 def wall_document(assembly: Assembly, unit: float) -> dict[str, Any]:
@@ -173,6 +190,43 @@ def exact_state(wall: Fractions, moving: BoolArray) -> tuple[Fraction, dict[str,
     return forces[3 * m], {"forces": _text(forces[: 3 * m]), "velocities": _text(velocities)}
 
 
+def _leaves(wall: Fractions, bound: Fraction, held: tuple[BoolArray, BoolArray], end: float) -> list[dict[str, Any]]:
+    """A leaf, or the leaves that it is divided into where it has no proof in fractions.
+
+    What is degenerate in floats may be neither forces nor mechanisms in fractions. A half holds one contact more, so
+    more is a proof of it. It is divided where one half has a proof, and the other half in turn.
+
+    Args:
+        wall: in fractions; bound: that is to be proved.
+        held: (4m,) contacts without slack, and without rate.
+        end: CPU time of this process [s] after which no further leaf is begun.
+
+    Raises:
+        ArithmeticError: no half has a proof in fractions, or the time is over.
+    """
+    if time.process_time() > end:
+        raise ArithmeticError("the time is over")
+    try:
+        return [_leaf(wall, bound, *held)]
+    except ArithmeticError:
+        for half, other in _halves(*held):
+            try:
+                proved = _leaf(wall, bound, *half)
+            except ArithmeticError:
+                continue
+            return [proved, *_leaves(wall, bound, other, end)]
+        raise
+
+
+def _halves(tight: BoolArray, still: BoolArray) -> Iterator[tuple[tuple[BoolArray, BoolArray], ...]]:
+    """Both halves of a leaf, in either order, for every contact at which it may be divided."""
+    for contact in np.flatnonzero(~(tight | still)):
+        one = np.arange(len(tight)) == contact
+        halves = (tight | one, still), (tight, still | one)
+        yield halves
+        yield halves[::-1]
+
+
 def _leaf(wall: Fractions, bound: Fraction, tight: BoolArray, still: BoolArray) -> dict[str, Any]:
     """A leaf with the velocities that exclude its forces, or the forces that exclude its mechanisms."""
     contacts: dict[str, Any] = {"tight": np.flatnonzero(tight).tolist(), "still": np.flatnonzero(still).tolist()}
@@ -184,17 +238,19 @@ def _leaf(wall: Fractions, bound: Fraction, tight: BoolArray, still: BoolArray) 
 
 
 def _velocities(wall: Fractions, bound: Fraction, tight: BoolArray) -> list[Fraction]:
+    """Velocities on which forces of a leaf do no positive work, and the loads negative work from zero to the bound."""
     n = len(wall.dead)
-    live = _sparse(wall.live)
-    rest = _sparse([-d - bound * f for d, f in zip(wall.dead, wall.live, strict=True)])
-    rows: list[tuple[Row, Limits]] = [(live, _POSITIVE), (rest, _POSITIVE), (_sum(live, rest), (ONE, ONE))]
+    at_zero = _sparse([-d for d in wall.dead])
+    at_bound = _sparse([-d - bound * f for d, f in zip(wall.dead, wall.live, strict=True)])
+    both = _sparse([-2 * d - bound * f for d, f in zip(wall.dead, wall.live, strict=True)])
+    rows: list[tuple[Row, Limits]] = [(at_zero, _POSITIVE), (at_bound, _POSITIVE), (both, (ONE, ONE))]
     for p, mu in enumerate(wall.friction):
         open1, open2, slip = wall.rows[3 * p : 3 * p + 3]
         back = {k: -value for k, value in slip.items()}
         for k, (row, weight) in enumerate(((open1, -mu), (open2, -mu), (slip, ONE), (back, ONE))):
             if not tight[4 * p + k]:
                 rows.append((row | {n + p: weight}, _NEGATIVE))
-    return _vertex(rows, n + len(wall.friction), {k: -value for k, value in rest.items()})[:n]
+    return _vertex(rows, n + len(wall.friction), {k: -value for k, value in at_zero.items()})[:n]
 
 
 def _forces(wall: Fractions, bound: Fraction, still: BoolArray) -> list[Fraction]:
@@ -244,20 +300,25 @@ def _vertex(rows: list[tuple[Row, Limits]], count: int, cost: Row) -> list[Fract
     fixed = {k for k, state in enumerate(basis.col_status) if int(state) != BASIC}
     equations: list[Row] = []
     right: list[Fraction] = []
-    for (row, (low, high)), state in zip(rows, basis.row_status, strict=True):
-        if int(state) != BASIC or low == high:
-            equations.append({k: value for k, value in row.items() if k not in fixed})
-            right.append((low if low is not None else high) or ZERO)
+    for slack, ((row, (low, high)), state) in enumerate(zip(rows, basis.row_status, strict=True), start=count):
+        if int(state) == BASIC and low != high:
+            continue
+        equation = {k: value for k, value in row.items() if k not in fixed}
+        if low != high:
+            equation[slack] = -ONE if low is not None else ONE
+        equations.append(equation)
+        right.append((low if low is not None else high) or ZERO)
     solution = solve_sparse(equations, right, point)
-    return [ZERO if k in fixed else solution.get(k, ZERO) for k in range(count)]
+    vertex = [ZERO if k in fixed else solution.get(k, ZERO) for k in range(count)]
+    for row, (low, high) in rows:
+        value = sum((entry * vertex[k] for k, entry in row.items()), ZERO)
+        if (low is not None and value < low) or (high is not None and value > high):
+            raise ArithmeticError("a vertex in floats is none in fractions")
+    return vertex
 
 
 def _sparse(values: list[Fraction]) -> Row:
     return {k: value for k, value in enumerate(values) if value}
-
-
-def _sum(a: Row, b: Row) -> Row:
-    return {k: a.get(k, ZERO) + b.get(k, ZERO) for k in a.keys() | b.keys()}
 
 
 def _text(values: list[Fraction]) -> list[str]:

@@ -9,8 +9,8 @@ What each statement of a certificate stands for, a definition or a theorem that 
 
 - blocks, interfaces: the wall, of which all else is said (`ExactWall`). That it is a given one is for `same_wall`.
 - state: definition of a collapse state (`check_state`); without it no multiplier is shown, and none is handed on.
-- bound: no collapse state of the wall has a smaller multiplier; with windows, none from zero on. Nothing is assumed of
-  the wall under its dead load.
+- bound: no collapse state of the wall has a multiplier from zero to below it. Nothing is assumed of the wall under its
+  dead load.
 - leaves: in a collapse state every contact is tight or still, so leaves that divide at one contact after the other hold
   all states (`_check_cover`). No contact of a leaf is both, else it would count for both halves of a division and
   exclude only what lies in both.
@@ -64,6 +64,8 @@ def verify(document: Any, seconds: float = SECONDS) -> tuple[Fraction, Fraction 
             raise CertificateError(f"its format is not {FORMAT}")
         wall = ExactWall(document, seconds)
         bound, upper = number(document["bound"]), None
+        if bound < 0:
+            raise CertificateError("it says nothing of multipliers below zero, where its bound is")
         if "state" in document:
             upper = number(document["multiplier"])
             check_state(wall, upper, document["state"])
@@ -84,8 +86,6 @@ def _check_windows(wall: ExactWall, bound: Fraction, document: Any) -> None:
     """Whether the windows, one above the other from zero, and cases of the last leave no state below the bound."""
     if "leaves" in document:
         raise CertificateError("it has leaves and windows")
-    if bound < 0:
-        raise CertificateError("intervals do not cover multipliers below zero")
     proved = Fraction(0)
     states: States | None = None
     for window in listed(document["windows"]):
@@ -186,10 +186,10 @@ class Leaf:
             self._check_forces(wall, bound, self.forces)
 
     def _check_velocities(self, wall: ExactWall, bound: Fraction, velocities: Vector) -> None:
-        """Virtual work: (lambda - bound) live.u >= -(dead + bound live).u for all forces of the leaf."""
-        live = wall.work(wall.live, velocities)
-        rest = -wall.work(wall.dead, velocities) - bound * live
-        if live < 0 or rest < 0 or live + rest <= 0:
+        """Virtual work: -(dead + lambda live).u <= 0 for all forces of the leaf; it is above zero below the bound."""
+        at_zero = -wall.work(wall.dead, velocities)
+        at_bound = at_zero - bound * wall.work(wall.live, velocities)
+        if at_zero <= 0 or at_bound < 0:
             raise CertificateError("the velocities of a leaf exclude nothing")
         for p, mu in enumerate(wall.friction):
             open1, open2, slip = wall.strains(p, velocities)
@@ -230,9 +230,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"{name}: refused: {error}")
             failed = 1
         else:
-            least = "no collapse state from zero to below" if "windows" in document else "no collapse state below"
             one = "" if upper is None else f"; one at {upper} = {in_digits(upper)}"
-            print(f"{name}: {least} {lower} = {in_digits(lower)}{one}")
+            print(f"{name}: no collapse state from zero to below {lower} = {in_digits(lower)}{one}")
     return failed
 
 
