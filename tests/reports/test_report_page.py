@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import re
 from html.parser import HTMLParser
@@ -235,7 +236,7 @@ def test_report_is_replaced_as_a_whole(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def _refuse(*_: object) -> None:
-    raise OSError("no space")
+    raise OSError(errno.ENOSPC, "no space")
 
 
 def test_failed_status_words_are_all_known():
