@@ -113,6 +113,24 @@ def test_a_newton_step_solves_the_linear_equations_of_the_path(problem: Problem,
     assert advanced.velocities == pytest.approx(point.velocities + 0.25 * first.velocities)
 
 
+def test_step_on_hyperbolas_keeps_products_where_a_tangent_leaves_the_interior() -> None:
+    """The larger of slack and rate takes the step; the forces are those of all four slacks."""
+    problem = make_problem(running_bond(3, 2, 0.2, 0.65))
+    newton, m = NewtonMatrix(problem), problem.n_interfaces
+    point = start_point(problem)
+    step = NewtonStep(problem, point, 0.0, np.zeros((m, 4), dtype=bool)).factorised(newton)
+    product = point.slack * point.rates
+    change = step.direction(product)
+    size = 3.0 / max(abs(change.slack / point.slack).max(), abs(change.rates / point.rates).max())
+    assert min(step.lengths(change.times(size), 1.0)) < 1.0
+    assert step.length_on(change.times(size), 0.9, 100.0) == 1.0
+    there = step.advance_on(change.times(size), product)
+    assert min(there.slack.min(), there.rates.min()) > 0.0
+    assert there.slack * there.rates == pytest.approx(product)
+    assert problem.slacks(problem.forces_of_slacks(there.slack)) == pytest.approx(there.slack)
+    assert step.length_on(change.times(10.0 * size), 0.9, 3.0) == pytest.approx(0.1, rel=0.3)
+
+
 def test_slacks_that_are_held_stay_and_points_outside_are_refused() -> None:
     problem = make_problem(block_on_halves())
     newton, point, tight = NewtonMatrix(problem), inside(problem), np.zeros((2, 4), dtype=bool)

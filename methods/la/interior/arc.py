@@ -4,7 +4,9 @@ The path goes through its start: y o g = tau w with the weights w that the start
 before it falls again. The tangent d/d(log tau) still exists, and a Newton step across it leads back to the path (Keller
 1977). At a fold the determinant of the Newton system changes its sign, and so tells the sense of the path however
 sharply it bends. Lengths are relative changes of slacks and rates, so that contacts that fade weigh no less than
-others. Where steps across do not lead back, the path is taken up again at the last good point with half the stride.
+others. A step keeps every product: where a contact opens or closes, slack and rate go along their hyperbola, so that
+the step is bounded by how much the larger of them grows, not by the smaller one's way to zero. Where steps across do
+not lead back, the path is taken up again at the last good point with half the stride.
 
 A path may also begin in associated flow, a linear programme: the dilatancy then falls with log tau from the friction
 to that of the joints. The associated path with these weights has one point for every tau, so no other point has the
@@ -30,12 +32,16 @@ _SHORTEST = 2.0**-8
 """Stride below which it is not halved again."""
 _FAR = 4.0
 """Largest logarithm of y g / (tau w) at which a step goes along the path; beyond, it only leads back to it."""
-_ASTRAY = 0.5
+_ASTRAY = 0.1
 """Root mean square of the relative changes back to the path beyond which a step only leads back."""
 _PATIENCE = 8
 """Steps back in turn after which the path is taken up again with a shorter stride."""
+_APART = 10.0
+"""Factor by which a step changes the product of a slack and its rate at most, to lead it back to the path."""
 _TO_BOUNDARY = 0.9
-"""Part of the way to the boundary that a step goes."""
+"""Part of the way to where a slack and its rate both vanish that a step goes."""
+_GROWTH = 100.0
+"""Relative growth of a slack or rate beyond which a step is shortened; steps along the path are far from it."""
 _GONE = 10.0
 """Relative gap above which the path has turned away for good."""
 
@@ -52,7 +58,7 @@ class Stepping:
         residual: scaled equilibrium and compatibility residuals at which a stretch of the path may stop.
     """
 
-    stride: float = 4.0
+    stride: float = 8.0
     trial: int = 200
     left: float = 0.3
     back: float = 0.1
@@ -69,8 +75,13 @@ class _Place:
 
 @dataclass(frozen=True)
 class _Way:
-    """How the path goes on from a place: across leads back to it, along is its tangent per unit of log tau."""
+    """How the path goes on from a place: across leads back to it, along is its tangent per unit of log tau.
 
+    Both are of the products (m, 4) there and those that back aims at, one where a slack is tight.
+    """
+
+    product: FloatArray
+    target: FloatArray
     back: Direction
     tangent: Direction
     growth: float
@@ -140,7 +151,7 @@ class ArcPath:
             if converged or present > _GONE or (not self._fall and self._is_closed()):
                 break
             try:
-                self._go_on(step)
+                self._go_on(step, ends=present <= gap and share == 0.0)
             except FloatingPointError:
                 break
             self._steps += 1
@@ -154,8 +165,11 @@ class ArcPath:
             return 0.0
         return float(np.clip(1.0 + np.log(self._here.tau / self._first) / self._fall, 0.0, 1.0))
 
-    def _go_on(self, step: NewtonStep) -> None:
+    def _go_on(self, step: NewtonStep, ends: bool) -> None:
         """One step back to the path, or along it, or back to the last good point.
+
+        Args:
+            step: the system here; ends: whether the path is to end here, so that a step only leads back to it.
 
         Raises:
             FloatingPointError: the system is singular to rounding, so that its solutions have no bound.
@@ -166,6 +180,9 @@ class ArcPath:
             self._astray += 1
             if self._astray <= _PATIENCE or not self._take_up_again():
                 self._advance(step, way, 0.0)
+            return
+        if ends:
+            self._advance(step, way, 0.0)
             return
         if not self._again and self._astray <= 1:
             self._stride = min(self._stepping.stride, 2.0 * self._stride)
@@ -202,12 +219,16 @@ class ArcPath:
 
     def _advance(self, step: NewtonStep, way: _Way, stride: float) -> None:
         change, growth = way.back.plus(way.growth + stride, way.tangent), way.growth + stride
-        length = min(step.lengths(change, _TO_BOUNDARY))
-        self._here = _Place(step.advance(change, length, length), self._here.tau * float(np.exp(length * growth)))
+        length = min(step.length_on(change, _TO_BOUNDARY, _GROWTH), 1.0 / max(abs(growth), 1.0))
+        product = (1.0 - length) * np.log(way.product) + length * (np.log(way.target) + growth)
+        tau = self._here.tau * float(np.exp(length * growth))
+        self._here = _Place(step.advance_on(change.times(length), np.exp(product)), tau)
 
     def _way(self, step: NewtonStep) -> _Way:
         point, tau = self._here.point, self._here.tau
-        target = tau * self._weights
+        product = np.where(self._tight, 1.0, point.slack * point.rates)
+        aim = np.where(self._tight, 1.0, tau * self._weights)
+        target = np.clip(aim, product / _APART, _APART * product)
         back = step.direction(target)
         growing = 1.0 / self._fall if 0.0 < step.dilatancy < 1.0 else 0.0
         tangent = step.direction(2.0 * target, growing).plus(-1.0, back)
@@ -215,9 +236,8 @@ class ArcPath:
         square = float((along**2).mean())
         growth = -float((along * across).mean()) / (square + 1.0)
         astray = float(np.sqrt(((across + growth * along) ** 2).mean()))
-        product = np.where(self._tight, target, point.slack * point.rates)
-        on_path = astray <= _ASTRAY and float(abs(np.log(product / target)).max()) <= _FAR
-        return _Way(back, tangent, growth, float(abs(along).max()), on_path)
+        on_path = astray <= _ASTRAY and float(abs(np.log(product / aim)).max()) <= _FAR
+        return _Way(product, target, back, tangent, growth, float(abs(along).max()), on_path)
 
 
 def _relative(point: Point, change: Direction, tight: BoolArray) -> FloatArray:

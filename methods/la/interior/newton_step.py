@@ -40,6 +40,16 @@ class Direction:
     velocities: FloatArray
     rates: FloatArray
 
+    def times(self, factor: float) -> Direction:
+        """`factor` times this change."""
+        return Direction(
+            factor * self.forces,
+            factor * self.slack,
+            factor * self.multiplier,
+            factor * self.velocities,
+            factor * self.rates,
+        )
+
     def plus(self, factor: float, other: Direction) -> Direction:
         """This change and `factor` times another."""
         return Direction(
@@ -181,6 +191,35 @@ class NewtonStep:
             point.velocities + dual * change.velocities,
             point.rates + dual * change.rates,
         )
+
+    def length_on(self, change: Direction, fraction: float, growth: float) -> float:
+        """Length, 1 at most, of a step on hyperbolas.
+
+        Args:
+            change: the whole step.
+            fraction: part of the way to where a slack and its rate both vanish that it goes at most.
+            growth: greatest relative growth of a slack or rate.
+        """
+        grows = np.maximum(change.slack / self.slack, change.rates / self.rates)
+        return min(1.0, fraction * _longest(np.ones(grows.shape), grows), growth / max(float(grows.max()), growth))
+
+    def advance_on(self, change: Direction, target: FloatArray) -> Point:
+        """The point after a change, with the products y o g = target (m, 4) of contacts that are not tight.
+
+        Of a slack and its rate the one that grows more takes the change, the other follows from the product. A contact
+        that is to open or close so stays on its hyperbola, which its tangent leaves at once.
+        """
+        problem, point, tight = self.problem, self.point, self.tight
+        slack, rates = point.slack + change.slack, point.rates + change.rates
+        slack_grows = change.slack / self.slack >= change.rates / self.rates
+        slack = np.where(tight, 0.0, np.where(slack_grows, slack, target / np.where(slack_grows, 1.0, rates)))
+        both = 2.0 * problem.law.strength(problem.forces_of_slacks(slack))
+        low, ahead = np.minimum(slack[:, 2:].min(axis=1), 0.5 * both), slack[:, 2] <= slack[:, 3]
+        shear = np.column_stack([np.where(ahead, low, both - low), np.where(ahead, both - low, low)])
+        held = tight[:, 2] | tight[:, 3]
+        slack[:, 2:] = np.where(held[:, None], slack[:, 2:], shear)
+        rates = np.where(tight, rates, target / np.where(tight, 1.0, slack))
+        return Point(slack, point.multiplier + change.multiplier, point.velocities + change.velocities, rates)
 
     def _agree(self, slack: FloatArray) -> None:
         strength = 2.0 * self.problem.law.strength(slack)  # whose first columns are the normal forces of dry joints

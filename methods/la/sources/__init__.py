@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from math import inf
 
 from harness.model.assembly import FloatArray
 from methods.la.sources.arcs import FAR, ArcPaths
@@ -33,7 +34,7 @@ SOURCES: tuple[Source, ...] = (
     LowPrestress(most=2000),
     SingleBlocks(),
     OtherWeights(),
-    ArcPaths(near=FAR, far=(), anyway=False),
+    ArcPaths(beginnings=FAR, most_moving=inf, anyway=False),
     ShiftedAssociated(),
     AnalyticCentre(),
     AssociatedForces(),

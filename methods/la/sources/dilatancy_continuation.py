@@ -24,15 +24,15 @@ class DilatancyContinuation:
         least: interfaces from which it is followed.
         begin: how far the associated path is followed; full steps may end below its gap.
         faded: share of the first tau at which the dilatancy is that of the joints.
-        gaps: at which the mechanism of the path is tried, until one has a state.
+        gaps: at which the mechanism of the path is tried.
         least_steps: Newton steps from one of them to the next, or one a block where those are more.
     """
 
     name: ClassVar[str] = "dilatancy continuation"
     least: int = 1001
     begin: PathSettings = field(default_factory=lambda: PathSettings(dilatancy=1.0, gap=0.1, residual=1e-3))
-    faded: float = 1e-3
-    gaps: tuple[float, ...] = (1e-6, 1e-8, 1e-9)
+    faded: float = 1e-2
+    gaps: tuple[float, ...] = (1e-8, 1e-9)
     least_steps: int = 1000
 
     def applies(self, problem: Problem) -> bool:
@@ -40,7 +40,7 @@ class DilatancyContinuation:
         return problem.n_interfaces >= self.least
 
     def states(self, search: Search) -> Iterator[CollapseState]:
-        """One state at most."""
+        """One state a gap at which forces fit the mechanism."""
         if search.record.known:
             return
         problem = search.problem
@@ -56,4 +56,3 @@ class DilatancyContinuation:
             state = search.nearest_state(path.point.slack)
             if state is not None:
                 yield state
-                return

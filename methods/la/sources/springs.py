@@ -215,11 +215,14 @@ class AnalyticCentre:
     Attributes:
         shares: of the least multiplier known between two commits, one path each.
         gravity_above: interfaces above which gravity's committed histories are tried here, as nowhere else.
+        lower_up_to: interfaces up to which they are followed though the dilatancy continuation led to a state; above,
+            a path takes minutes.
     """
 
     name: ClassVar[str] = "springs from the analytic centre"
     shares: tuple[float, ...] = (3e-3, 1e-3)
     gravity_above: int = 2000
+    lower_up_to: int = 6000
     committed: CommittedHistories = CommittedHistories()
 
     def applies(self, problem: Problem) -> bool:
@@ -231,7 +234,8 @@ class AnalyticCentre:
 
         States of the dilatancy continuation are higher than those of springs by up to a hundredth.
         """
-        known = search.record.led_to_state_but(DilatancyContinuation.name)
+        lower = search.problem.n_interfaces <= self.lower_up_to
+        known = search.record.led_to_state_but(DilatancyContinuation.name) if lower else search.record.known
         if not (known or search.associated.outcome == "unbounded"):
             yield from (state for _, state in _ends(search, self._starts(search)))
 
