@@ -253,9 +253,9 @@ def test_least_state_is_the_most_exact_of_those_that_differ_by_rounding_only() -
 def test_springs_of_gravity_are_left_out_where_paths_by_arc_length_arrive_on_large_walls() -> None:
     """They took as long as the rest of the search on 990 bricks, and ended higher wherever the others arrived."""
     problem = make_problem(running_bond(20, 11, 0.175, 0.65))
-    gravity = LowPrestress(vertices_up_to=10, gravity_alone=100)
+    gravity = LowPrestress(vertices_up_to=10, one_path=100)
     breakpoints = []
-    for sources in ([gravity], [ArcPaths(least=100, beginnings=NEAR[1:2]), gravity]):
+    for sources in ([gravity], [ArcPaths(least=100, near=NEAR[1:2]), gravity]):
         search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
         explore(search, sources)
         assert search.record.known
@@ -267,7 +267,7 @@ def test_dilatancy_continuation_has_a_state_where_joints_press_under_the_live_lo
     """Between the openings of a facade head joints press that the dead load leaves unloaded."""
     problem = make_problem(facade(1, 4, "running", 0.6))
     search = Search(problem, NewtonMatrix(problem), budget=Budget(SearchLimits(descents=0)))
-    explore(search, [ArcPaths(beginnings=NEAR[1:2])])
+    explore(search, [ArcPaths(near=NEAR[1:2])])
     assert not search.record.known
     explore(search, [DilatancyContinuation()])
     state = search.record.improvements[-1].state

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from math import inf
 
 from harness.model.assembly import FloatArray
 from methods.la.sources.arcs import FAR, ArcPaths
@@ -34,7 +33,7 @@ SOURCES: tuple[Source, ...] = (
     LowPrestress(most=2000),
     SingleBlocks(),
     OtherWeights(),
-    ArcPaths(beginnings=FAR, most_moving=inf, anyway=False),
+    ArcPaths(near=FAR, far=FAR[1:], anyway=False),
     ShiftedAssociated(),
     AnalyticCentre(),
     AssociatedForces(),

@@ -55,16 +55,16 @@ class ArcPaths:
 
     Attributes:
         least: interfaces from which they are followed.
-        beginnings: of the paths.
-        most_moving: blocks that move above which none is followed: a path near the central one folds a thousand times
-            and more.
+        near: beginnings of the paths; far: those from `many` blocks on, until one does not arrive, as then no other.
+        many: moving blocks on which a path near the central one folds a thousand times and more.
         anyway: whether they are followed though a state is known.
     """
 
     name: ClassVar[str] = "paths by arc length"
     least: int = 1001
-    beginnings: tuple[ArcStart, ...] = NEAR
-    most_moving: float = 2000
+    near: tuple[ArcStart, ...] = NEAR
+    far: tuple[ArcStart, ...] = FAR
+    many: int = 2000
     anyway: bool = True
 
     def applies(self, problem: Problem) -> bool:
@@ -76,16 +76,18 @@ class ArcPaths:
         if search.associated.state is None or (search.record.known and not self.anyway):
             return
         region = moving_region(search.problem, search.associated.state.velocities)
-        if region.problem.n_velocities // 3 > self.most_moving:
-            return
-        for arc_start in self.beginnings:
+        many = region.problem.n_velocities // 3 > self.many
+        for arc_start in self.far if many else self.near:
             known = search.record.known
             if (known and not self.anyway) or not search.budget.steps_left(known):
                 return
+            state = None
             with suppress(SingularMatrix):  # It ends one path, not the search.
                 state = _end_of(arc_start, search, region)
-                if state is not None:
-                    yield state
+            if state is not None:
+                yield state
+            elif many:
+                return
 
 
 def _end_of(arc_start: ArcStart, search: Search, region: Region) -> CollapseState | None:

@@ -91,7 +91,9 @@ class CommittedHistories:
 class LowPrestress:
     """Paths from forces with little self-stress: gravity's, then vertices or mixtures of statics.
 
-    On walls of many interfaces those of gravity with updated plastic slip come between. On small walls whose joints are
+    On walls of many interfaces those of gravity with updated plastic slip come between; on larger ones the path from
+    forces well within yield comes first, and gravity's where it ends without a state: with many joints at the limit of
+    friction from the beginning that has more events. On small walls whose joints are
     all parallel or at right angles gravity's is the only one: central paths with other block weights lead lower there,
     in less time. docs/notes/limit-analysis.md gives the evidence for this and for the limits below.
 
@@ -100,9 +102,9 @@ class LowPrestress:
         vertices_up_to: interfaces up to which paths start from pure vertices, and walls of right-angled joints have
             gravity's path alone. Above, such walls have no other where that ends above the least known state; gravity
             is no such sign where joints have many directions.
-        gravity_alone: interfaces above which there is no other path, because updated histories need many breakpoints
-            and gain little; and none on walls of right-angled joints where paths by arc length led to states, which are
-            lower.
+        one_path: interfaces above which one path with a state is enough, because updated histories need many
+            breakpoints and gain little; and none is followed on walls of right-angled joints where paths by arc length
+            led to states, which are lower.
         vertex: shares of a vertex, of gravity's forces and of central ones up to there.
         mixtures: above, in turn. Pure vertices have many forces at zero or at the limit of friction, and on walls of
             hundreds of blocks their paths seldom end; a tenth of central forces takes them off their limits.
@@ -113,7 +115,7 @@ class LowPrestress:
     least: int = 0
     most: int = 6000
     vertices_up_to: int = 200
-    gravity_alone: int = 2000
+    one_path: int = 2000
     committed: CommittedHistories = CommittedHistories()
     vertex: tuple[tuple[float, float, float], ...] = ((1.0, 0.0, 0.0),)
     mixtures: tuple[tuple[float, float, float], ...] = (
@@ -132,18 +134,22 @@ class LowPrestress:
         """One state a path that ends, until the breakpoints are spent."""
         problem, known = search.problem, search.record.least
         right_angled = _right_angled(problem, _RIGHT)
-        if right_angled and problem.n_interfaces > self.gravity_alone and search.record.led_to_state(ArcPaths.name):
+        if right_angled and problem.n_interfaces > self.one_path and search.record.led_to_state(ArcPaths.name):
             return
         small = problem.n_interfaces <= self.vertices_up_to
         for k, state in _ends(search, self._starts(search)):
             yield state
+            if problem.n_interfaces > self.one_path:
+                return
             if k == 0 and right_angled and (small or state.multiplier > known + LEAST_IMPROVEMENT):
                 return
 
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
+        if problem.n_interfaces > self.one_path:
+            yield partial(_from_central_forces, search, search.choices.spring_ratios[0])
         yield partial(_from_gravity, search, search.gravity, problem.unit_multiplier)
-        if problem.n_interfaces > self.gravity_alone or not problem.law.is_cone:
+        if problem.n_interfaces > self.one_path or not problem.law.is_cone:
             return
         if problem.n_interfaces > self.vertices_up_to:
             yield from self.committed.starts(search)
