@@ -36,6 +36,10 @@ _PATIENCE = 10
 _AWAY = 300.0
 """Multiple of what the blocks had moved at the last rest from which it is asked whether the wall falls."""
 
+_FAR = 0.01
+"""Length scales that a block has gone under one load from where on what joints give is little beside its motion, and
+the motion changes with the shape of the wall."""
+
 _BRACKET_MEANING = "[highest multiplier at which it came to rest, lowest at which it fell]"
 
 STIFFNESS = 1e6
@@ -131,14 +135,14 @@ class Holds:
                 return LoadStep(State.UNDECIDED, residual, wall.steps - start, places - before)
 
     def _followed(self, fall: LoadStep) -> FloatArray:
-        """Displacements (n, 3) of a fall for as long again as it took to show, until a block has gone the `reach`.
+        """Displacements (n, 3) of a fall for as long again as it took to show, until a block has gone `_FAR`.
 
         What comes before is in part what joints give while forces pass from one to another: blocks seem to penetrate.
-        Where the fall was shown by how far it went, its displacements are those until then.
+        Where a block had gone as far when the fall was shown, its displacements are those until then.
         """
         wall, shown = self.wall, self.wall.places.copy()
-        reach, end = self.settings.reach * wall.assembly.length_scale, wall.steps + fall.steps
-        while wall.steps < end and float(np.abs((wall.places - self.rest[0])[:, :2]).max()) < reach:
+        far, end = _FAR * wall.assembly.length_scale, wall.steps + fall.steps
+        while wall.steps < end and float(np.abs((wall.places - self.rest[0])[:, :2]).max()) < far:
             Deadline.of_run().ask()
             wall.advance(LOOK)
         return fall.velocity if np.array_equal(wall.places, shown) else wall.places - shown
