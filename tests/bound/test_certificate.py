@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -25,6 +26,7 @@ from methods.proof.verify.checker import main, verify
 from methods.proof.verify.document import digest
 from methods.proof.verify.exact_wall import CertificateError
 from tests.bound.digits import one_digit_changed
+from tests.la import bodies
 from tests.walls import assembly, stack, wall_data
 
 
@@ -158,3 +160,23 @@ def test_symmetrical_hinges_that_are_none_in_fractions_are_proved_all_the_same()
     assert upper is not None
     assert 0 < upper - lower <= Fraction(2, 10**6) * upper
     assert float(upper) == pytest.approx(0.0457551613, abs=2e-10)
+
+
+@pytest.mark.parametrize(
+    ("height", "friction", "least"),
+    [(0.5, 1.0, Fraction(5, 6)), (0.5, 1.25, Fraction(25, 29)), (1.0, 1.5, Fraction(5, 6))],
+)
+def test_leaves_with_forces_at_zero_take_no_velocities_without_work_of_the_dead_load(
+    height: float, friction: float, least: Fraction
+) -> None:
+    """A block one wide on two halves, lifted by its weight and pushed by a fifth of it.
+
+    It slides at mu (1 - x) = x / 5 and rocks at (1 - x) / 2 = x h / 10.
+    """
+    wall = bodies.stack([1.0], [height], friction, halves=2)
+    lifted = replace(wall, live=wall.live * 0.2 - wall.dead)
+    document = certificate(lifted)
+    assert document is not None
+    lower, upper = verify(document)
+    assert upper == least
+    assert 0 < upper - lower <= Fraction(2, 10**6) * upper
