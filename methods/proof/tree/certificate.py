@@ -165,6 +165,10 @@ _POSITIVE: Limits = (ZERO, None)
 _NEGATIVE: Limits = (None, ZERO)
 
 
+_ENOUGH = Fraction(1000)
+"""Work of the loads at the bound, in that of the dead load, that no leaf needs more of: it may have no limit."""
+
+
 def exact_state(wall: Fractions, moving: BoolArray) -> tuple[Fraction, dict[str, Any]]:
     """Multiplier, forces and velocities of the collapse state that moves in these contacts (4m,).
 
@@ -240,20 +244,19 @@ def _leaf(wall: Fractions, bound: Fraction, tight: BoolArray, still: BoolArray) 
 def _velocities(wall: Fractions, bound: Fraction, tight: BoolArray) -> list[Fraction]:
     """Velocities on which forces of a leaf do no positive work, and the loads negative work from zero to the bound.
 
-    The work of the dead load is -1. Nothing is optimised: an optimal vertex is degenerate more often, and then none in
-    fractions.
+    The work of the dead load is -1, and that of the loads at the bound as far below zero as it may be.
     """
     n = len(wall.dead)
     at_zero = _sparse([-d for d in wall.dead])
     at_bound = _sparse([-d - bound * f for d, f in zip(wall.dead, wall.live, strict=True)])
-    rows: list[tuple[Row, Limits]] = [(at_zero, (ONE, ONE)), (at_bound, _POSITIVE)]
+    rows: list[tuple[Row, Limits]] = [(at_zero, (ONE, ONE)), (at_bound, _POSITIVE), (at_bound, (None, _ENOUGH))]
     for p, mu in enumerate(wall.friction):
         open1, open2, slip = wall.rows[3 * p : 3 * p + 3]
         back = {k: -value for k, value in slip.items()}
         for k, (row, weight) in enumerate(((open1, -mu), (open2, -mu), (slip, ONE), (back, ONE))):
             if not tight[4 * p + k]:
                 rows.append((row | {n + p: weight}, _NEGATIVE))
-    return _vertex(rows, n + len(wall.friction), {})[:n]
+    return _vertex(rows, n + len(wall.friction), {k: -value for k, value in at_bound.items()})[:n]
 
 
 def _forces(wall: Fractions, bound: Fraction, still: BoolArray) -> list[Fraction]:
