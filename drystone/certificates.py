@@ -190,7 +190,7 @@ def certificate_line(run: Run, result: Result) -> dict[str, Any]:
         "tolerance": 0.0 if lower is None else ROUNDING * abs(lower),
         "type": "exact",
         "source": path.name,
-        "requirement": "No collapse state lies below the bound that the certificate proves in fractions.",
+        "requirement": "No collapse state lies from zero to below the bound that the certificate proves in fractions.",
         "verdict": str(verdict),
         "sentence": sentence,
     }
@@ -219,7 +219,9 @@ def with_certificates(run: ComparisonRun, seconds: float = 60.0) -> ComparisonRu
 
 
 def _with_certificate(item: CaseResults, seconds: float) -> CaseResults:
-    statement = "no collapse state lies below the bound that the certificate of the wall proves in fractions"
+    statement = (
+        "no collapse state lies from zero to below the bound that the certificate of the wall proves in fractions"
+    )
     certified = None
     for path in certificates_for(item.case):
         try:

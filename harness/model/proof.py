@@ -74,10 +74,10 @@ class Proof:
         if self.standing is Standing.NONE:
             return ""
         if self.standing is Standing.MINIMUM and self.bound is not None:
-            return f"an exact certificate proves that no collapse state lies below {_rounded_down(self.bound)}"
+            return f"an exact certificate proves that no collapse state lies {_excluded(self.bound)}"
         if self.standing is Standing.TO_ROUNDING:
             return f"{self.by} finds in floating point that no collapse state lies below it"
-        known = [] if self.bound is None else [f"none lies below {_rounded_down(self.bound)}, by an exact certificate"]
+        known = [] if self.bound is None else [f"none lies {_excluded(self.bound)}, by an exact certificate"]
         if self.lower_bound is not None:
             known.append(f"{self.by} finds none below {_rounded_down(self.lower_bound)}, to rounding")
         return "; ".join(["a lower collapse state is not excluded", *known])
@@ -92,6 +92,11 @@ class Proof:
         """As JSON values."""
         values = {"standing": str(self.standing), "bound": self.bound, "lower_bound": self.lower_bound}
         return values | {"sentence": self.sentence}
+
+
+def _excluded(bound: float) -> str:
+    """The multipliers that a certificate of this bound excludes, in words."""
+    return f"from zero to below {_rounded_down(bound)}"
 
 
 def _rounded_down(bound: float) -> str:

@@ -52,8 +52,8 @@ def test_a_bound_in_floating_point_counts_only_above_the_exact_one():
     proof = proof_of(item, item.results[1])
     assert (proof.bound, proof.lower_bound) == (0.4375, 0.46875)
     assert proof.sentence == (
-        "Least known: a lower collapse state is not excluded; none lies below 0.4375, by an exact certificate; "
-        "la finds none below 0.46875, to rounding."
+        "Least known: a lower collapse state is not excluded; none lies from zero to below 0.4375, "
+        "by an exact certificate; la finds none below 0.46875, to rounding."
     )
     item = certified(answers(lower_bound=0.3), 0.4)
     assert proof_of(item, item.results[1]).lower_bound is None

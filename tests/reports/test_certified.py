@@ -39,8 +39,9 @@ def test_the_minimum_of_a_wall_with_a_certificate_is_called_so():
     assert item.certified is not None
     assert LEAST * (1 - 2e-6) <= item.certified.bound <= LEAST
     assert "(LA, minimum, proved)" in wall_findings(item)
-    assert "minimum, proved: an exact certificate proves that no collapse state lies below 0.557997" in which_number(
-        item
+    assert (
+        "minimum, proved: an exact certificate proves that no collapse state lies from zero to below 0.557997"
+        in which_number(item)
     )
     rows = {result.method: run_row(0, number, item) for number, result in enumerate(item.results)}
     assert rows["la"].proved
@@ -70,7 +71,7 @@ def test_a_state_below_the_bound_is_a_violation():
     item.results[:] = low
     item.gates[:] = []
     again = with_certificates(compared.run)
-    assert any("no collapse state lies below the bound" in sentence for sentence in violations(again))
+    assert any("no collapse state lies from zero to below the bound" in sentence for sentence in violations(again))
 
 
 def test_a_wall_without_a_certificate_has_no_gate_of_it():
@@ -163,7 +164,7 @@ def test_every_output_says_the_same_of_a_proved_minimum(tmp_path: Path):
     wall = drystone.read_wall(file)
     compared = drystone.compare(wall, ["fe", "la"], isolated=False)
     item = compared.run.cases[0]
-    said = "an exact certificate proves that no collapse state lies below 0.399999"
+    said = "an exact certificate proves that no collapse state lies from zero to below 0.399999"
     rows = compared.to_pandas().set_index("method")
     assert said in rows.loc["la", "proof_sentence"]
     assert rows["proof"].tolist() == ["none", "minimum"]
