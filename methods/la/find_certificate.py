@@ -97,14 +97,14 @@ def find_certificate(
         jobs: processes that work on the parts of divided states.
     """
     problem = make_problem(assembly)
-    most = Sizes().limits(search.effort, problem).nodes if nodes is None else nodes
-    document = certificate(assembly, most) if most else None
-    if document is not None:
-        return _Attempt(document)
     newton = NewtonMatrix(problem)
     early = dead_load_answer(problem, newton, assembly.has_live_load)
     if early is not None:
         return _Attempt(None, early.sentence)
+    most = Sizes().limits(search.effort, problem).nodes if nodes is None else nodes
+    document = certificate(assembly, most) if most else None
+    if document is not None:
+        return _Attempt(document)
     too_large = beyond(problem, BoundSettings().most_interfaces)
     if too_large:
         return _Attempt(None, too_large)

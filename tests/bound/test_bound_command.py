@@ -98,6 +98,14 @@ def test_a_wall_that_no_live_load_moves_has_no_bound_and_is_told_why(tmp_path: P
     assert "cannot make the wall collapse" in answer.output
 
 
+def test_of_a_wall_that_falls_no_bound_is_shown_though_a_load_would_hold_it(tmp_path: Path) -> None:
+    """A block on a slope steeper than its friction: pushed up the slope it slides up at 7/10 + 1/2."""
+    loads = {"gravity": [0.7, -1.0], "live": {"body": [{"per_weight": [-1, 0]}]}}
+    answer, output = bound(tmp_path, wall_data(stack(1, 1.0, 0.5), 0.5, loads=loads))
+    assert (answer.exit_code, output.exists()) == (1, False)
+    assert "falls under its dead load" in answer.output
+
+
 def test_a_wall_whose_supports_move_has_no_certificate_and_is_refused(tmp_path: Path) -> None:
     """One was written before, which `verify-bound --wall` refused."""
     wall = wall_data(stack(1), 0.5, settlements=[{"blocks": ["base"], "translation": [0, -1]}])
