@@ -19,6 +19,8 @@ from methods.la.sources.budget import Budget, SearchLimits
 from methods.la.sources.search import Search
 from methods.la.sources.springs import AnalyticCentre, CommittedHistories, LowPrestress, ShiftedAssociated
 from tests.la.bodies import block_on_halves, running_bond
+from tests.walls import assembly
+from tests.walls import running_bond as bond
 
 WALLS = {
     "block of the paper": block_on_halves(),
@@ -74,6 +76,15 @@ def test_forces_with_little_self_stress_lead_to_exact_states_within_statics(wall
     assert len({round(state.multiplier, 9) for state in states}) > 1
     for state in states:
         assert_exact_within_statics(search, state)
+
+
+@pytest.mark.parametrize("strength", [{"cohesion": 1.0}, {"cohesion": 1.0, "tensile_strength": 1.0}])
+def test_joints_with_strength_are_followed_from_gravity_alone_on_large_walls_too(strength: dict[str, float]) -> None:
+    wall = assembly(bond(3, 2), 0.6, **strength)
+    search = search_of(wall, 12000)
+    source = LowPrestress(one_path=wall.n_interfaces - 1)
+    (state,) = states_of(source, search)
+    assert_exact_within_statics(search, state)
 
 
 @pytest.mark.slow

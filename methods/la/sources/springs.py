@@ -146,7 +146,7 @@ class LowPrestress:
 
     def _starts(self, search: Search) -> Iterator[Start]:
         problem = search.problem
-        if problem.n_interfaces > self.one_path:
+        if problem.n_interfaces > self.one_path and problem.law.is_cone:
             yield partial(_from_central_forces, search, search.choices.spring_ratios[0])
         yield partial(_from_gravity, search, search.gravity, problem.unit_multiplier)
         if problem.n_interfaces > self.one_path or not problem.law.is_cone:
