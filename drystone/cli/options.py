@@ -30,6 +30,7 @@ from harness.model.writing import check_output, replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from rich.console import Console
 
 
 STORE = Path("out/drystone.sqlite")
@@ -106,6 +107,21 @@ def _kept() -> str:
     """What a command that did not come to its end leaves behind, as the end of a sentence; empty without a store."""
     store = click.get_current_context().params.get("store")
     return "" if store is None else f"; finished runs are kept in {store}"
+
+
+def console_of(width: int) -> Console:
+    """Standard output, so wide where it is no terminal; its reader may go before the end, as `head` does.
+
+    That is for `catching` to take: rich ends with exit code 1, which says that something failed.
+    """
+    from rich.console import Console
+
+    class Left(Console):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError
+
+    console = Left()
+    return console if console.is_terminal else Left(width=width)
 
 
 def say(text: str, *, err: bool = False) -> None:

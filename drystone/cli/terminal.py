@@ -10,8 +10,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from drystone.cli.options import console_of
 from harness.engine.pipeline import Progress
 from harness.engine.run import Run
 from harness.engine.verdict import violations
@@ -32,28 +33,10 @@ from harness.model.support_reactions import REACTIONS, reactions_of
 from harness.model.table import in_units, values
 from reports.labels.numbers import count, met
 
-if TYPE_CHECKING:
-    from rich.console import Console
-
 _MOST_WALLS = 3
 """Walls of which one sentence is said that are named one by one."""
 JUDGED = {True: 0, False: 1, None: 3}
 """Exit codes for an answer that is accepted, rejected, or shows nothing that proves or refutes its claim."""
-
-
-def _console(width: int) -> Console:
-    """Standard output, so wide where it is no terminal; its reader may go before the end, as `head` does.
-
-    That is for the command to take: rich ends with exit code 1, which says that something failed.
-    """
-    from rich.console import Console
-
-    class Left(Console):
-        def on_broken_pipe(self) -> None:
-            raise BrokenPipeError
-
-    console = Left()
-    return console if console.is_terminal else Left(width=width)
 
 
 def _escape(text: str) -> str:
@@ -95,7 +78,7 @@ def print_comparison(compared: ComparisonRun, report: Path | None, columns: Sequ
     """The table of a comparison, what does not hold, and where the report is."""
     from rich.table import Table
 
-    console = _console(140)
+    console = console_of(140)
     table = Table(title=f"Drystone: {_escape(compared.title)}", title_justify="left", caption_justify="left")
     for column in columns:
         whole = column.name in ("multiplier", "method")
@@ -387,7 +370,7 @@ def print_rows(rows: list[dict[str, Any]]) -> None:
     """Rows with equal names as a table."""
     from rich.table import Table
 
-    console = _console(160)
+    console = console_of(160)
     table = Table(box=None, pad_edge=False)
     if rows:
         for name in rows[0]:

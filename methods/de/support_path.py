@@ -37,14 +37,10 @@ _LEVEL = 5e-3
 """Change of a constant reaction at most, as a share of it or of the dead load, whichever is more: what the judge leaves
 open. Over many elastic displacements the stiffness of a mechanism allows more."""
 
-MOST_STEPS = 50
-"""Of the supports: a ring of 100 voussoirs needs 47 to become a mechanism, a wall of bricks 33."""
 NO_REST = "The wall with deformable joints does not come to rest under its dead load."
 
 
-def support_path(
-    assembly: Assembly, gives_way: bool, settings: SoftSettings, most: int = MOST_STEPS
-) -> SupportPath | str:
+def support_path(assembly: Assembly, gives_way: bool, settings: SoftSettings, most: int = 50) -> SupportPath | str:
     """Carry the supports from rest under the dead load until the reaction is constant.
 
     Without a stiffness of their own joints are the stiffest that places resolve, because the displacements at which a
@@ -53,7 +49,8 @@ def support_path(
     Args:
         assembly: dry, with `support_motion`.
         gives_way: whether the supports move as prescribed; else backwards.
-        settings: of joints, corners and rests; most: steps of the displacement.
+        settings: of joints, corners and rests.
+        most: steps of the supports: a ring of 100 voussoirs needs 47 to become a mechanism, a wall of bricks 33.
 
     Returns:
         The path, or why there is none.

@@ -26,9 +26,6 @@ from methods.springs.path.breakpoints import next_breakpoint, strain_rates
 from methods.springs.rest.equilibrium import equilibrium, gravity_state
 from methods.springs.rest.newton import Equilibrium
 
-MOST_STEPS = 80
-"""Of the displacement. A plateau that is not reached at `_LONGER` to this power first steps, some 1e9 times the elastic
-displacement, is beyond the digits of the gaps."""
 _FIRST = 0.05
 """Step, in displacements of a gap spring under the mean weight of a block: the wall is still elastic then."""
 _LONGER = 1.3
@@ -73,14 +70,16 @@ def support_path(
     assembly: Assembly,
     gives_way: bool,
     settings: GapSpringsSettings,
-    most: int = MOST_STEPS,
+    most: int = 80,
 ) -> SupportPath | str:
     """Impose the motion of the supports from rest under the dead load until the reaction is constant.
 
     Args:
         assembly: with `support_motion`, without ties, props and compressive strength.
         gives_way: whether the supports move as prescribed; else backwards.
-        settings: of the springs; most: steps of the displacement.
+        settings: of the springs.
+        most: steps of the displacement. A plateau that is not reached at `_LONGER` to the power of 80 first steps, some
+            1e9 times the elastic displacement, is beyond the digits of the gaps.
 
     Returns:
         The path, or why there is none.
