@@ -25,12 +25,15 @@ from methods.la.sources.search import Search
 from methods.proof.search.options import PROVED, ProofOptions
 from methods.proof.search.window_search import Bracket
 from methods.proof.tree.certificate import tree_certificate
+from methods.proof.verify.document import share_of_largest
 
 
 def certificate(
     assembly: Assembly, nodes: int = 1500, seconds: float = math.inf, mechanism: FloatArray | None = None
 ) -> dict[str, Any] | None:
     """The certificate of a wall of one component, which stands under its dead load; None where none was found.
+
+    One larger than is checked is none.
 
     Args:
         assembly: the wall, whose numbers must be short fractions.
@@ -53,7 +56,8 @@ def certificate(
     if not proof.complete:
         return None
     least = proof.state.multiplier * problem.unit_multiplier, proof.state.moving
-    return tree_certificate(assembly, problem.unit_force, least, proof.leaves, end)
+    document = tree_certificate(assembly, problem.unit_force, least, proof.leaves, end)
+    return None if document is None or share_of_largest(document) > 1.0 else document
 
 
 def _state_of(search: Search, mechanism: FloatArray) -> CollapseState | None:

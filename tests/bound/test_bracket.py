@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from collections.abc import Callable
 
 import numpy as np
@@ -15,7 +16,7 @@ from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.la.bounds import BoundedLimitAnalysis
-from methods.la.certify.window_certificate import equations_of
+from methods.la.certify.window_certificate import certified_bracket, equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.search import LimitAnalysis
@@ -27,7 +28,9 @@ from methods.proof.search.bracket import bracket
 from methods.proof.search.relaxation import Relaxation
 from methods.proof.search.slack_bounds import SlackProgramme
 from methods.proof.search.subproblem import Subproblem
-from methods.proof.search.window_search import Bracket
+from methods.proof.search.window_search import Bracket, Stop
+from methods.proof.verify import document as documents
+from methods.proof.verify.checker import verify
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond
@@ -181,3 +184,15 @@ def test_what_is_proved_of_the_component_that_fails_is_not_said_of_a_wall_with_a
     assert both.details["lower_bound"] == pytest.approx(0.6, rel=2e-6)  # the margin of the tree
     assert "certificate" not in both.details
     assert "The other components bear more, to rounding" in both.sentence
+
+
+@pytest.mark.parametrize("most", [60_000, 120_000])
+def test_the_search_ends_before_its_certificate_is_larger_than_is_checked(
+    most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = make_problem(small_wall(10))
+    monkeypatch.setattr(documents, "MOST_BYTES", most)
+    found, document = certified_bracket(problem, IRREGULAR, np.zeros((12, 3)), 60.0)
+    assert found.stopped is Stop.SPACE
+    read = documents.read(json.dumps(document).encode())
+    assert 0.0 < float(verify(read)[0]) <= found.lower * problem.unit_multiplier <= IRREGULAR

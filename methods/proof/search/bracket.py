@@ -12,6 +12,9 @@ from methods.proof.search.side_by_side import windows_of
 from methods.proof.search.slack_bounds import SlackProgramme
 from methods.proof.search.window_search import Bracket, Certify, Stop, WindowSearch
 
+_ROOM = 2
+"""Largest windows for which there must be room when one is begun: one, and what is decided before it."""
+
 
 def bracket(
     equations: Equations, upper: float, seconds: float, lower: float = 0.0, certify: Certify | None = None
@@ -31,7 +34,7 @@ def bracket(
     found.stopped = Stop.TIME
 
     def windows() -> None:
-        while not found.closed and equations.options.clock() < until:
+        while not found.closed and equations.options.clock() < until and search.has_room(_ROOM):
             if not search.window():
                 branched(search)
                 break
@@ -39,6 +42,8 @@ def bracket(
     best_so_far(windows, lambda: None)  # What is known by then is the bracket.
     if found.closed:
         found.stopped = None
+    elif found.stopped == Stop.TIME and not search.has_room(_ROOM):
+        found.stopped = Stop.SPACE
     elif search.unbounded:
         found.stopped = Stop.SIZE
     return found
@@ -53,7 +58,7 @@ def branched(root: WindowSearch) -> None:
     busy: dict[WindowSearch, int] = {}
 
     def in_time() -> bool:
-        return not found.closed and options.clock() < root.until
+        return not found.closed and options.clock() < root.until and root.has_room(_ROOM * (len(busy) + 1))
 
     def lowest() -> Iterator[WindowSearch]:
         while in_time() and (waiting := [leaf for leaf in leaves if leaf not in busy and not leaf.found.closed]):

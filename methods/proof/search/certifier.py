@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,10 +17,28 @@ from methods.proof.search.subproblem import AtContact, Division
 from methods.proof.search.window_document import Scales, WindowDocument, below, whole_values
 from methods.proof.search.window_search import WindowProof
 from methods.proof.verify.cases import States, states_of
+from methods.proof.verify.document import share_of_largest
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 
 _Fact = tuple[str, int]
 """What a step shows: the rate of a contact is bounded, its slack is zero, or an interface is loaded."""
+
+
+class _Kept(NamedTuple):
+    """A part of a certificate, and how much of the largest that is checked it takes."""
+
+    content: dict[str, Any]
+    share: float
+
+
+def _kept(content: dict[str, Any]) -> _Kept:
+    return _Kept(content, share_of_largest(content))
+
+
+def _has_room(kept: list[_Kept], parts: int) -> bool:
+    """Whether the largest certificate that is checked has room for these, and so many more as large as any of them."""
+    shares = [each.share for each in kept]
+    return sum(shares) + parts * max(shares, default=0.0) <= 1.0
 
 
 class Certifier:
@@ -32,19 +50,27 @@ class Certifier:
         equations: of the search.
 
     Attributes:
-        documents: of the windows that raise the bound, in order.
         cases: into which the states of the last of them are divided, if they are.
         refused: why there is no document of the last window; empty where there is.
     """
 
     def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
         self.wall, self.scales = wall, scales
-        self.documents: list[dict[str, Any]] = []
+        self._kept: list[_Kept] = []
         self.cases: _CaseCertifier | None = None
         self.refused = ""
         self._programme = SlackProgramme(equations)
         self._proved = Fraction(0)
         self._last: tuple[Relaxation, States] | None = None
+
+    @property
+    def documents(self) -> list[dict[str, Any]]:
+        """Of the windows that raise the bound, in order."""
+        return [each.content for each in self._kept]
+
+    def has_room(self, windows: int) -> bool:
+        """Whether the documents of so many more windows fit into a certificate that is checked."""
+        return _has_room(self._kept + ([] if self.cases is None else self.cases.kept()), windows)
 
     @property
     def bound(self) -> Fraction:
@@ -68,8 +94,8 @@ class Certifier:
         self.refused = ""
         if bound > self._proved:
             if self._last is not None and proof.relaxation is self._last[0]:
-                self.documents.pop()
-            self.documents.append(document)
+                self._kept.pop()
+            self._kept.append(_kept(document))
             greatest = writer.limits.greatest_size(document["size"])
             self._proved = bound
             self._last = proof.relaxation, states_of(writer.limits, greatest, bound)
@@ -106,7 +132,7 @@ class _CaseCertifier:
 
     def __init__(self, scales: Scales, programme: SlackProgramme, states: States) -> None:
         self._scales, self._programme, self._states = scales, programme, states
-        self._steps: list[dict[str, Any]] = []
+        self._steps: list[_Kept] = []
         self._halves: dict[bool, _CaseCertifier] = {}
         self._at: dict[str, Any] = {}
         self._before = states
@@ -117,6 +143,14 @@ class _CaseCertifier:
         """Multiplier below which no state of the case is left."""
         halves = [half.bound for half in self._halves.values()]
         return min(halves) if len(halves) == 2 else self._states.low
+
+    def kept(self) -> list[_Kept]:
+        """The steps of this node and of all below it."""
+        return self._steps + [each for half in self._halves.values() for each in half.kept()]
+
+    def has_room(self, windows: int) -> bool:
+        """Whether so many more windows fit into a certificate of this node alone."""
+        return _has_room(self.kept(), windows)
 
     def document(self) -> dict[str, Any]:
         """The node of the certificate, without the steps that nothing needs."""
@@ -131,7 +165,7 @@ class _CaseCertifier:
             node |= self._at | {"parts": [part for part, _ in parts]}
             needs = parts[0][1] | parts[1][1]
         steps = []
-        for step in reversed(self._steps):
+        for step, _ in reversed(self._steps):
             shown = _fact(step)
             if shown is None or shown in needs:
                 steps.append(step)
@@ -162,7 +196,7 @@ class _CaseCertifier:
             if proof.relaxation is self._last:
                 self._steps.pop()
             self._before, self._last = before, proof.relaxation
-            self._steps.append(document)
+            self._steps.append(_kept(document))
             self._states = before.at(bound)
         return self._lower
 
@@ -216,7 +250,7 @@ class _CaseCertifier:
         except CertificateError:
             return
         if after.low > self._states.low or step["shows"] in ("still", "loaded", "slow", "tight"):
-            self._steps.append(step)
+            self._steps.append(_kept(step))
             self._states, self._last = after, None
 
 

@@ -66,6 +66,7 @@ class Stop(StrEnum):
 
     TIME = "the time was over"
     SIZE = "the time was over before the size of the mechanisms of a window was bounded"
+    SPACE = "a certificate of more windows would be larger than is checked"
     LOST = "a process that worked on a part of the states ended without a result"
     DECIDED = "the states with the least bound have no contact left at which to divide them"
 
@@ -106,6 +107,9 @@ class Bracket:
 
 class Certify(Protocol):
     """What exact arithmetic leaves of that which a search finds."""
+
+    def has_room(self, windows: int) -> bool:
+        """Whether the documents of so many more windows fit into a certificate that is checked."""
 
     def window(self, proof: WindowProof, needed: float) -> float:
         """The bound after a window, of which so much is needed."""
@@ -156,6 +160,10 @@ class WindowSearch:
     def unbounded(self) -> bool:
         """Whether the size of the mechanisms of the last window is not bounded yet."""
         return self._relaxation is not None and not np.isfinite(self._size)
+
+    def has_room(self, windows: int) -> bool:
+        """Whether so many more windows, if they are certified, fit into the certificate."""
+        return self._certify is None or self._certify.has_room(windows)
 
     def parts(self, at: Division, rates: RateProgramme) -> list[WindowSearch]:
         """The searches of both halves of the states of this one, which begin where this one is.
