@@ -39,6 +39,7 @@ def test_a_check_ends_when_its_seconds_are_over() -> None:
 LARGE: dict[str, tuple[bytes, str]] = {
     "a small file of many bytes": (gzip.compress(b" " * (documents.MOST_BYTES + 1)), "bytes, unpacked"),
     "many values": (gzip.compress(b"[" + b"0," * documents.MOST_VALUES + b"0]"), "values"),
+    "many objects": (gzip.compress(b"[" + b"{}," * documents.MOST_OBJECTS + b"{}]"), "objects"),
     "a long number": (b'{"bound": ' + b"1" * 5000 + b"}", "digits"),
     "deep lists": (b"[" * 100_000 + b"]" * 100_000, ""),
     "cut short": (gzip.compress(b"{}")[:-5], "cut short"),
@@ -68,8 +69,8 @@ def test_a_certificate_of_exactly_the_limits_is_read_and_of_one_more_is_not(
     def read(content: bytes) -> Any:
         return documents.read(gzip.compress(content) if packed else content)
 
-    content = b'{"a": [1, 2, 30]}'
-    for name, most in (("MOST_BYTES", len(content)), ("MOST_VALUES", 5)):  # an object, a list and three numbers
+    content = b'{"a": [1, 2, 30]}'  # an object, a list and three numbers
+    for name, most in (("MOST_BYTES", len(content)), ("MOST_VALUES", 5), ("MOST_OBJECTS", 1)):
         with monkeypatch.context() as limited:
             limited.setattr(documents, name, most)
             assert read(content) == {"a": [1, 2, 30]}

@@ -15,6 +15,8 @@ MOST_BYTES = 256 * 2**20
 """Of a certificate, unpacked: some 450 windows of 49 interfaces."""
 MOST_VALUES = 32_000_000
 """Numbers, texts, lists and objects of a certificate: what it holds takes about 60 bytes each when it is read."""
+MOST_OBJECTS = 100_000
+"""Of a certificate: blocks, interfaces, leaves and steps. An object takes four times what another value does."""
 _LONG = re.compile(rb"[0-9]{%d}" % (MOST_DIGITS + 1))
 _GZIP = b"\x1f\x8b"
 
@@ -37,6 +39,8 @@ def unpacked(content: bytes) -> bytes:
         raise CertificateError(f"it has more than {MOST_BYTES:,} bytes, unpacked")
     if _values(content) > MOST_VALUES:
         raise CertificateError(f"it has more than {MOST_VALUES:,} values")
+    if content.count(b"{") > MOST_OBJECTS:
+        raise CertificateError(f"it has more than {MOST_OBJECTS:,} objects")
     if _LONG.search(content):
         raise CertificateError(f"it has a number of more than {MOST_DIGITS} digits")
     return content
@@ -65,7 +69,7 @@ def read(content: bytes) -> Any:
 def share_of_largest(document: Any) -> float:
     """How much of the largest certificate that is checked this part of one takes."""
     content = json.dumps(document).encode()
-    return max(len(content) / MOST_BYTES, _values(content) / MOST_VALUES)
+    return max(len(content) / MOST_BYTES, _values(content) / MOST_VALUES, content.count(b"{") / MOST_OBJECTS)
 
 
 def _values(content: bytes) -> int:
