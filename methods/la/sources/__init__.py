@@ -13,7 +13,7 @@ from methods.la.sources.friction_continuation import FrictionContinuation
 from methods.la.sources.mechanisms import GivenMechanisms, JoinedBlocks, SingleBlocks
 from methods.la.sources.paths import AssociatedForces, CentralPath, OtherWeights, ReducedFriction, TrescaMechanisms
 from methods.la.sources.search import Search, Source
-from methods.la.sources.springs import AnalyticCentre, LowPrestress, ShiftedAssociated
+from methods.la.sources.springs import AnalyticCentre, FromGravity, LowPrestress, ShiftedAssociated
 from methods.numerics.failures import SingularMatrix
 
 __all__ = ["SOURCES", "Source", "explore", "from_motions"]
@@ -26,7 +26,7 @@ SOURCES: tuple[Source, ...] = (
     DilatancyContinuation(),
     LowPrestress(least=2001),
     CentralPath(most=1000),
-    FrictionContinuation(),
+    FrictionContinuation(otherwise=FromGravity()),
     ReducedFriction(factors=(0.3, 0.0), least=2001, anyway=False),
     TrescaMechanisms(),
     CentralPath(anyway=False),

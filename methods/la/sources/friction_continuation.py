@@ -3,6 +3,9 @@
 The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
 the low collapse states have small basins; at lower friction the same mechanisms are found at once.
 
+At low friction central paths may arrive nowhere, on walls that hardly stand. A step that knows no state then takes one
+from elsewhere; without it all further steps would have nothing to carry on.
+
 With less friction in the joints that the dead load leaves unloaded, the head joints of a wall, self-stress gives these
 no shear. Little of the non-associated problem is left that is not convex, and the interior point ends low on walls of
 any size.
@@ -19,7 +22,7 @@ import numpy as np
 from harness.model.assembly import FloatArray
 from methods.la.core.problem import Problem
 from methods.la.core.state import CollapseState
-from methods.la.sources.search import Search
+from methods.la.sources.search import Search, Source
 
 _ROUGHEST = 1.5
 """Friction of all joints at most, where unloaded ones are lowered further; above, starts end at self-stress."""
@@ -34,6 +37,12 @@ def with_reduced_friction(problem: Problem, factor: float) -> Problem | None:
     return replace(problem, law=problem.law.with_friction(np.where(unloaded, factor * friction, friction)))
 
 
+def _with_friction(problem: Problem, friction: FloatArray) -> Problem:
+    """The wall with other friction, which springs in its joints have too."""
+    assembly = replace(problem.assembly, friction=friction)
+    return replace(problem, law=problem.law.with_friction(friction), assembly=assembly)
+
+
 @dataclass(frozen=True)
 class FrictionContinuation:
     """Steps of lower friction, each with its own path and what the step before found.
@@ -42,12 +51,15 @@ class FrictionContinuation:
         pool: mechanisms carried from one step to the next.
         rough: friction above which the steps are shares of this instead: much higher, most starts end at self-stress.
         rough_steps: friction of the steps added for joints that are rougher still.
+        otherwise: where states of a step come from if its path leads to none and no mechanism of the step before has
+            forces.
     """
 
     name: ClassVar[str] = "friction continuation"
     pool: int = 24
     rough: float = 1.0
     rough_steps: tuple[float, ...] = (1.0, 1.5, 2.25)
+    otherwise: Source | None = None
 
     def applies(self, problem: Problem) -> bool:
         """On every wall; the budget says how many steps there are."""
@@ -59,11 +71,14 @@ class FrictionContinuation:
         for friction in self._steps(search):
             if not search.budget.steps_left(search.record.known):
                 break
-            step = search.varied(replace(search.problem, law=search.problem.law.with_friction(friction)))
-            states = [step.interior()]
+            step = search.varied(_with_friction(search.problem, friction))
+            found = step.interior()
+            states = [] if found is None else [found]
             if below is not None:
                 states += step.adopt(below, self.pool)
-            step.descend_from(state for state in states if state is not None)
+            if not states and self.otherwise is not None and self.otherwise.applies(step.problem):
+                states += self.otherwise.states(step)
+            step.descend_from(states)
             below = step
         if below is not None:
             yield from search.adopt(below, self.pool)

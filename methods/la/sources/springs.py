@@ -184,6 +184,27 @@ class LowPrestress:
 
 
 @dataclass(frozen=True)
+class FromGravity:
+    """The path from gravity's forces alone.
+
+    Attributes:
+        most: interfaces up to which it is followed.
+    """
+
+    name: ClassVar[str] = "springs from gravity"
+    most: int = 200
+
+    def applies(self, problem: Problem) -> bool:
+        """On joints that slide without lifting."""
+        return problem.n_interfaces <= self.most and not problem.dilates
+
+    def states(self, search: Search) -> Iterator[CollapseState]:
+        """One state, if the path ends in one."""
+        start = partial(_from_gravity, search, search.gravity, search.problem.unit_multiplier)
+        yield from (state for _, state in _ends(search, iter([start])))
+
+
+@dataclass(frozen=True)
 class ShiftedAssociated:
     """The path from forces somewhat before the end of the associated one, where no state is known yet.
 
