@@ -24,18 +24,18 @@ _Fact = tuple[str, int]
 """What a step shows: the rate of a contact is bounded, its slack is zero, or an interface is loaded."""
 
 
-class _Kept(NamedTuple):
+class _Passage(NamedTuple):
     """A part of a certificate, and how much of the largest that is checked it takes."""
 
     content: dict[str, Any]
     share: float
 
 
-def _kept(content: dict[str, Any]) -> _Kept:
-    return _Kept(content, share_of_largest(content))
+def _passage(content: dict[str, Any]) -> _Passage:
+    return _Passage(content, share_of_largest(content))
 
 
-def _has_room(kept: list[_Kept], parts: int) -> bool:
+def _has_room(kept: list[_Passage], parts: int) -> bool:
     """Whether the largest certificate that is checked has room for these, and so many more as large as any of them."""
     shares = [each.share for each in kept]
     return sum(shares) + parts * max(shares, default=0.0) <= 1.0
@@ -56,7 +56,7 @@ class Certifier:
 
     def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
         self.wall, self.scales = wall, scales
-        self._kept: list[_Kept] = []
+        self._kept: list[_Passage] = []
         self.cases: _CaseCertifier | None = None
         self.refused = ""
         self._programme = SlackProgramme(equations)
@@ -95,7 +95,7 @@ class Certifier:
         if bound > self._proved:
             if self._last is not None and proof.relaxation is self._last[0]:
                 self._kept.pop()
-            self._kept.append(_kept(document))
+            self._kept.append(_passage(document))
             greatest = writer.limits.greatest_size(document["size"])
             self._proved = bound
             self._last = proof.relaxation, states_of(writer.limits, greatest, bound)
@@ -132,7 +132,7 @@ class _CaseCertifier:
 
     def __init__(self, scales: Scales, programme: SlackProgramme, states: States) -> None:
         self._scales, self._programme, self._states = scales, programme, states
-        self._steps: list[_Kept] = []
+        self._steps: list[_Passage] = []
         self._halves: dict[bool, _CaseCertifier] = {}
         self._at: dict[str, Any] = {}
         self._before = states
@@ -144,7 +144,7 @@ class _CaseCertifier:
         halves = [half.bound for half in self._halves.values()]
         return min(halves) if len(halves) == 2 else self._states.low
 
-    def kept(self) -> list[_Kept]:
+    def kept(self) -> list[_Passage]:
         """The steps of this node and of all below it."""
         return self._steps + [each for half in self._halves.values() for each in half.kept()]
 
@@ -196,7 +196,7 @@ class _CaseCertifier:
             if proof.relaxation is self._last:
                 self._steps.pop()
             self._before, self._last = before, proof.relaxation
-            self._steps.append(_kept(document))
+            self._steps.append(_passage(document))
             self._states = before.at(bound)
         return self._lower
 
@@ -250,7 +250,7 @@ class _CaseCertifier:
         except CertificateError:
             return
         if after.low > self._states.low or step["shows"] in ("still", "loaded", "slow", "tight"):
-            self._steps.append(_kept(step))
+            self._steps.append(_passage(step))
             self._states, self._last = after, None
 
 
