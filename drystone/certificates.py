@@ -29,7 +29,7 @@ from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import SECONDS, verify
-from methods.proof.verify.document import FORMAT, MOST_BYTES, MOST_VALUES, unpacked
+from methods.proof.verify.document import FORMAT, MOST_BYTES, MOST_NESTED, MOST_VALUES, unpacked
 from methods.proof.verify.exact_wall import CertificateError, number
 
 CERTIFICATE = "certificate.json"
@@ -85,7 +85,7 @@ def read_certificate(path: Path) -> Any:
         content = unpacked(read_bytes(path, MOST_BYTES))
     except CertificateError as error:
         raise InputError(str(error), "Give the whole file, as `drystone bound` wrote it", source=str(path)) from None
-    document = json_of(text_of(content, str(path)), str(path), MOST_VALUES)
+    document = json_of(text_of(content, str(path)), str(path), MOST_VALUES, MOST_NESTED)
     return require_format(document, FORMAT, "a certificate", str(path))
 
 

@@ -197,13 +197,14 @@ def read_json(path: Path, limit: int = LARGEST_FILE) -> Any:
     return json_of(read_text(path, limit), str(path))
 
 
-def json_of(text: str, source: str, most_values: int = _MOST_VALUES) -> Any:
+def json_of(text: str, source: str, most_values: int = _MOST_VALUES, most_nested: int = MOST_NESTED) -> Any:
     """The value of JSON text.
 
     Args:
         text: of the document.
         source: what errors call it.
         most_values: values that it may have; commas and brackets are counted for them before anything is made.
+        most_nested: levels that it may have.
 
     Raises:
         InputError: not JSON, NaN or infinite numbers, a name given twice, half a character, or too much or nested too
@@ -228,7 +229,7 @@ def json_of(text: str, source: str, most_values: int = _MOST_VALUES) -> Any:
             raise InputError(f'the name "{twice}" is given twice in one object', "Keep one", source=source)
         return found
 
-    too_deep = InputError(f"it is nested more than {MOST_NESTED} deep", "Give a flat document", source=source)
+    too_deep = InputError(f"it is nested more than {most_nested} deep", "Give a flat document", source=source)
     try:
         data = json.loads(text, parse_constant=refuse_constant, parse_float=finite, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
@@ -237,7 +238,7 @@ def json_of(text: str, source: str, most_values: int = _MOST_VALUES) -> Any:
         raise InputError("it has a number of thousands of digits", "Give finite numbers", source=source) from None
     except RecursionError:
         raise too_deep from None
-    if nested_deeper(data, MOST_NESTED):
+    if nested_deeper(data, most_nested):
         raise too_deep
     if _HALF_CHARACTER.search(text):
         _refuse_half_characters(data, source)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 import json
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +14,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.bounds import small_wall
+from drystone.certificates import read_certificate, write_certificate
 from harness.model.assembly import Assembly
 from harness.model.build import build
 from harness.model.wall import Wall
 from methods.la.bounds import BoundedLimitAnalysis
-from methods.la.certify.window_certificate import certified_bracket, equations_of
+from methods.la.certify.window_certificate import certificate_of, certified_bracket, certifier_of, equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
 from methods.la.search import LimitAnalysis
@@ -31,6 +34,7 @@ from methods.proof.search.subproblem import Subproblem
 from methods.proof.search.window_search import Bracket, Stop
 from methods.proof.verify import document as documents
 from methods.proof.verify.checker import verify
+from methods.proof.verify.document import FORMAT
 from tests.bound.by_cases import in_cases
 from tests.enumeration import least_by_enumeration
 from tests.la.bodies import column, running_bond
@@ -186,13 +190,42 @@ def test_what_is_proved_of_the_component_that_fails_is_not_said_of_a_wall_with_a
     assert "The other components bear more, to rounding" in both.sentence
 
 
-@pytest.mark.parametrize("most", [60_000, 120_000])
+@pytest.mark.parametrize(
+    ("limit", "most"),
+    [("document.MOST_BYTES", 60_000), ("document.MOST_BYTES", 120_000), ("document.MOST_VALUES", 20_000)],
+)
 def test_the_search_ends_before_its_certificate_is_larger_than_is_checked(
-    most: int, monkeypatch: pytest.MonkeyPatch
+    limit: str, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem = make_problem(small_wall(10))
-    monkeypatch.setattr(documents, "MOST_BYTES", most)
+    monkeypatch.setattr(f"methods.proof.verify.{limit}", most)
     found, document = certified_bracket(problem, IRREGULAR, np.zeros((12, 3)), 60.0)
     assert found.stopped is Stop.SPACE
     read = documents.read(json.dumps(document).encode())
     assert 0.0 < float(verify(read)[0]) <= found.lower * problem.unit_multiplier <= IRREGULAR
+
+
+def test_the_search_ends_before_its_certificate_is_nested_deeper_than_is_read(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    problem = make_problem(small_wall(10))
+    certifier, levels = certifier_of(problem), 10
+    monkeypatch.setattr("methods.proof.search.certifier.MOST_NESTED", levels + 4)  # two divisions
+    monkeypatch.setattr("drystone.certificates.MOST_NESTED", levels + 4)
+    found = in_cases(problem, IRREGULAR / problem.unit_multiplier, certify=certifier)
+    assert 0 < found.branches <= 3
+    assert not found.closed
+    document = certificate_of(problem, IRREGULAR, np.zeros((12, 3)), certifier)
+    assert document is not None
+    write_certificate(tmp_path / "certificate.json", document)
+    assert read_certificate(tmp_path / "certificate.json") == document
+
+
+def test_a_certificate_of_many_divisions_is_read(tmp_path: Path) -> None:
+    # Friction .85 needed more than 13 on 21 bricks: what was written was refused as nested too deeply.
+    node: dict[str, Any] = {"steps": []}
+    for _ in range(150):
+        node = {"contact": 0, "parts": [node, {"steps": []}], "steps": []}
+    document = {"format": FORMAT, "windows": [], "cases": node}
+    write_certificate(tmp_path / "certificate.json", document)
+    assert read_certificate(tmp_path / "certificate.json") == document

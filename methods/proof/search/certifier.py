@@ -17,9 +17,11 @@ from methods.proof.search.subproblem import AtContact, Division
 from methods.proof.search.window_document import Scales, WindowDocument, below, whole_values
 from methods.proof.search.window_search import WindowProof
 from methods.proof.verify.cases import States, states_of
-from methods.proof.verify.document import share_of_largest
+from methods.proof.verify.document import MOST_NESTED, share_of_largest
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 
+_LEVELS = 10
+"""Of a certificate beside its divided states."""
 _Fact = tuple[str, int]
 """What a step shows: the rate of a contact is bounded, its slack is zero, or an interface is loaded."""
 
@@ -70,7 +72,9 @@ class Certifier:
 
     def has_room(self, windows: int) -> bool:
         """Whether the documents of so many more windows fit into a certificate that is checked."""
-        return _has_room(self._kept + ([] if self.cases is None else self.cases.kept()), windows)
+        if self.cases is None:
+            return _has_room(self._kept, windows)
+        return 2 * self.cases.depth() + _LEVELS <= MOST_NESTED and _has_room(self._kept + self.cases.kept(), windows)
 
     @property
     def bound(self) -> Fraction:
@@ -147,6 +151,10 @@ class _CaseCertifier:
     def kept(self) -> list[_Passage]:
         """The steps of this node and of all below it."""
         return self._steps + [each for half in self._halves.values() for each in half.kept()]
+
+    def depth(self) -> int:
+        """How often the states of this node are divided, and divided again."""
+        return 1 + max((half.depth() for half in self._halves.values()), default=0)
 
     def has_room(self, windows: int) -> bool:
         """Whether so many more windows fit into a certificate of this node alone."""

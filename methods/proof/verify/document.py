@@ -17,6 +17,8 @@ MOST_VALUES = 32_000_000
 """Numbers, texts, lists and objects of a certificate: what it holds takes about 60 bytes each when it is read."""
 MOST_OBJECTS = 100_000
 """Of a certificate: blocks, interfaces, leaves and steps. An object takes four times what another value does."""
+MOST_NESTED = 400
+"""Levels of a certificate: a division of states has two."""
 _LONG = re.compile(rb"[0-9]{%d}" % (MOST_DIGITS + 1))
 _GZIP = b"\x1f\x8b"
 
