@@ -237,8 +237,8 @@ def test_mechanism_without_a_state_below_one_multiplier_is_asked_again_below_a_h
 
 
 @pytest.mark.parametrize("factor", [1.0, 1.1, 1.4])
-def test_a_step_of_lower_friction_where_no_central_path_arrives_takes_the_path_from_gravity(factor: float) -> None:
-    # At friction .57 to .62 springs from gravity alone lead to this mechanism of one tilting stone; at .65 nothing did.
+def test_steps_of_lower_friction_carry_on_what_the_springs_from_gravity_lead_to(factor: float) -> None:
+    # At friction .57 to .62 these alone lead to this mechanism of one tilting stone; at .65 nothing did.
     wall = next(itertools.islice(walls("courses of stones", 1), 20, None))
     answer = LimitAnalysis().solve(replace(wall, friction=factor * wall.friction), SearchSettings())
     assert answer.multiplier is not None

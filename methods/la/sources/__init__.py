@@ -26,7 +26,7 @@ SOURCES: tuple[Source, ...] = (
     DilatancyContinuation(),
     LowPrestress(least=2001),
     CentralPath(most=1000),
-    FrictionContinuation(otherwise=FromGravity()),
+    FrictionContinuation(beside=FromGravity()),
     ReducedFriction(factors=(0.3, 0.0), least=2001, anyway=False),
     TrescaMechanisms(),
     CentralPath(anyway=False),

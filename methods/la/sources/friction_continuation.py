@@ -3,8 +3,8 @@
 The mechanisms of zero-dilatancy flow do not depend on friction, only the forces that fit them do. At high friction
 the low collapse states have small basins; at lower friction the same mechanisms are found at once.
 
-At low friction central paths may arrive nowhere, on walls that hardly stand. A step that knows no state then takes one
-from elsewhere; without it all further steps would have nothing to carry on.
+Central paths keep all the self-stress that friction allows, and may arrive nowhere on walls that hardly stand. Springs
+from gravity, with little self-stress, lead to other mechanisms at lower friction, which are carried on as well.
 
 With less friction in the joints that the dead load leaves unloaded, the head joints of a wall, self-stress gives these
 no shear. Little of the non-associated problem is left that is not convex, and the interior point ends low on walls of
@@ -51,15 +51,14 @@ class FrictionContinuation:
         pool: mechanisms carried from one step to the next.
         rough: friction above which the steps are shares of this instead: much higher, most starts end at self-stress.
         rough_steps: friction of the steps added for joints that are rougher still.
-        otherwise: where states of a step come from if its path leads to none and no mechanism of the step before has
-            forces.
+        beside: another source of states of each step.
     """
 
     name: ClassVar[str] = "friction continuation"
     pool: int = 24
     rough: float = 1.0
     rough_steps: tuple[float, ...] = (1.0, 1.5, 2.25)
-    otherwise: Source | None = None
+    beside: Source | None = None
 
     def applies(self, problem: Problem) -> bool:
         """On every wall; the budget says how many steps there are."""
@@ -76,8 +75,8 @@ class FrictionContinuation:
             states = [] if found is None else [found]
             if below is not None:
                 states += step.adopt(below, self.pool)
-            if not states and self.otherwise is not None and self.otherwise.applies(step.problem):
-                states += self.otherwise.states(step)
+            if self.beside is not None and self.beside.applies(step.problem):
+                states += self.beside.states(step)
             step.descend_from(states)
             below = step
         if below is not None:
