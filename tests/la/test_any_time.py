@@ -23,7 +23,7 @@ def out_of_time(*_: Any, **__: Any) -> Any:
 STEPS = {
     "later": ("sources.paths.CentralPath.states", "central path"),
     "continuation": ("sources.friction_continuation.FrictionContinuation.states", "friction continuation"),
-    "springs": ("sources.gravity.Gravity.of", "springs with low prestress"),
+    "springs": ("sources.springs.LowPrestress.states", "springs with low prestress"),
     "proof": ("least.prove", "moving blocks joined"),
 }
 
