@@ -51,7 +51,7 @@ class FrictionContinuation:
         pool: mechanisms carried from one step to the next.
         rough: friction above which the steps are shares of this instead: much higher, most starts end at self-stress.
         rough_steps: friction of the steps added for joints that are rougher still.
-        beside: another source of states of each step.
+        beside: the starting-point strategy that each step tries as well.
     """
 
     name: ClassVar[str] = "friction continuation"
