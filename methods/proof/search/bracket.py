@@ -12,9 +12,6 @@ from methods.proof.search.side_by_side import windows_of
 from methods.proof.search.slack_bounds import SlackProgramme
 from methods.proof.search.window_search import Bracket, Certify, Stop, WindowSearch
 
-_ROOM = 2
-"""Largest windows for which there must be room when one is begun: one, and what is decided before it."""
-
 
 def bracket(
     equations: Equations, upper: float, seconds: float, lower: float = 0.0, certify: Certify | None = None
@@ -34,7 +31,7 @@ def bracket(
     found.stopped = Stop.TIME
 
     def windows() -> None:
-        while not found.closed and equations.options.clock() < until and search.has_room(_ROOM):
+        while not found.closed and equations.options.clock() < until and search.has_room():
             if not search.window():
                 branched(search)
                 break
@@ -42,7 +39,7 @@ def bracket(
     best_so_far(windows, lambda: None)  # What is known by then is the bracket.
     if found.closed:
         found.stopped = None
-    elif found.stopped == Stop.TIME and not search.has_room(_ROOM):
+    elif found.stopped == Stop.TIME and not search.has_room():
         found.stopped = Stop.SPACE
     elif search.unbounded:
         found.stopped = Stop.SIZE
@@ -58,7 +55,7 @@ def branched(root: WindowSearch) -> None:
     busy: dict[WindowSearch, int] = {}
 
     def in_time() -> bool:
-        return not found.closed and options.clock() < root.until and root.has_room(_ROOM * (len(busy) + 1))
+        return not found.closed and options.clock() < root.until and root.has_room(len(busy) + 1)
 
     def lowest() -> Iterator[WindowSearch]:
         while in_time() and (waiting := [leaf for leaf in leaves if leaf not in busy and not leaf.found.closed]):

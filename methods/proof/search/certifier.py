@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -20,8 +21,6 @@ from methods.proof.verify.cases import States, states_of
 from methods.proof.verify.document import MOST_NESTED, share_of_largest
 from methods.proof.verify.exact_wall import CertificateError, ExactWall
 
-_LEVELS = 10
-"""Of a certificate beside its divided states."""
 _Fact = tuple[str, int]
 """What a step shows: the rate of a contact is bounded, its slack is zero, or an interface is loaded."""
 
@@ -37,13 +36,27 @@ def _passage(content: dict[str, Any]) -> _Passage:
     return _Passage(content, share_of_largest(content))
 
 
-def _has_room(kept: list[_Passage], parts: int) -> bool:
-    """Whether the largest certificate that is checked has room for these, and so many more as large as any of them."""
-    shares = [each.share for each in kept]
-    return sum(shares) + parts * max(shares, default=0.0) <= 1.0
+class _Passages(ABC):
+    """What a certificate holds so far, of which no more is written than is checked."""
+
+    @abstractmethod
+    def kept(self) -> list[_Passage]:
+        """All of it."""
+
+    @abstractmethod
+    def depth(self) -> int:
+        """How often its states are divided, and divided again."""
+
+    def has_room(self, processes: int = 1) -> bool:
+        """Whether what these find in one window each fits into it: at most two passages as large as any before."""
+        shares = [each.share for each in self.kept()]
+        shallow = (
+            2 * self.depth() + 10 <= MOST_NESTED
+        )  # A division has two levels; what stands beside it, fewer than ten.
+        return shallow and sum(shares) + 2 * processes * max(shares, default=0.0) <= 1.0
 
 
-class Certifier:
+class Certifier(_Passages):
     """The documents of windows as a bracket goes up, asked after each.
 
     Args:
@@ -58,7 +71,7 @@ class Certifier:
 
     def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
         self.wall, self.scales = wall, scales
-        self._kept: list[_Passage] = []
+        self._windows: list[_Passage] = []
         self.cases: _CaseCertifier | None = None
         self.refused = ""
         self._programme = SlackProgramme(equations)
@@ -68,13 +81,15 @@ class Certifier:
     @property
     def documents(self) -> list[dict[str, Any]]:
         """Of the windows that raise the bound, in order."""
-        return [each.content for each in self._kept]
+        return [each.content for each in self._windows]
 
-    def has_room(self, windows: int) -> bool:
-        """Whether the documents of so many more windows fit into a certificate that is checked."""
-        if self.cases is None:
-            return _has_room(self._kept, windows)
-        return 2 * self.cases.depth() + _LEVELS <= MOST_NESTED and _has_room(self._kept + self.cases.kept(), windows)
+    def kept(self) -> list[_Passage]:
+        """Windows, and the steps of cases."""
+        return self._windows + ([] if self.cases is None else self.cases.kept())
+
+    def depth(self) -> int:
+        """How often the states of the last window are divided."""
+        return 0 if self.cases is None else self.cases.depth()
 
     @property
     def bound(self) -> Fraction:
@@ -98,8 +113,8 @@ class Certifier:
         self.refused = ""
         if bound > self._proved:
             if self._last is not None and proof.relaxation is self._last[0]:
-                self._kept.pop()
-            self._kept.append(_passage(document))
+                self._windows.pop()
+            self._windows.append(_passage(document))
             greatest = writer.limits.greatest_size(document["size"])
             self._proved = bound
             self._last = proof.relaxation, states_of(writer.limits, greatest, bound)
@@ -125,7 +140,7 @@ class Certifier:
         return self.scales.scaled(self._proved)
 
 
-class _CaseCertifier:
+class _CaseCertifier(_Passages):
     """What is proved of the states of one case, step by step, and of its halves once it is divided.
 
     Args:
@@ -155,10 +170,6 @@ class _CaseCertifier:
     def depth(self) -> int:
         """How often the states of this node are divided, and divided again."""
         return 1 + max((half.depth() for half in self._halves.values()), default=0)
-
-    def has_room(self, windows: int) -> bool:
-        """Whether so many more windows fit into a certificate of this node alone."""
-        return _has_room(self.kept(), windows)
 
     def document(self) -> dict[str, Any]:
         """The node of the certificate, without the steps that nothing needs."""

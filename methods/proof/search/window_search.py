@@ -108,8 +108,8 @@ class Bracket:
 class Certify(Protocol):
     """What exact arithmetic leaves of that which a search finds."""
 
-    def has_room(self, windows: int) -> bool:
-        """Whether the documents of so many more windows fit into a certificate that is checked."""
+    def has_room(self, processes: int = 1) -> bool:
+        """Whether what these find in one window each fits into a certificate that is checked."""
 
     def window(self, proof: WindowProof, needed: float) -> float:
         """The bound after a window, of which so much is needed."""
@@ -161,9 +161,9 @@ class WindowSearch:
         """Whether the size of the mechanisms of the last window is not bounded yet."""
         return self._relaxation is not None and not np.isfinite(self._size)
 
-    def has_room(self, windows: int) -> bool:
-        """Whether so many more windows, if they are certified, fit into the certificate."""
-        return self._certify is None or self._certify.has_room(windows)
+    def has_room(self, processes: int = 1) -> bool:
+        """Whether what these find in one window each fits into the certificate, if there is to be one."""
+        return self._certify is None or self._certify.has_room(processes)
 
     def parts(self, at: Division, rates: RateProgramme) -> list[WindowSearch]:
         """The searches of both halves of the states of this one, which begin where this one is.
