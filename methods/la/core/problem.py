@@ -7,7 +7,7 @@ Source: Baggio and Trovalusci (1995), equations 1 to 7.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -162,6 +162,10 @@ class Problem:
         moving = velocities.reshape(-1, 3).copy()
         moving[:, 2] /= self.unit_length
         return moving
+
+    def with_friction(self, friction: FloatArray) -> Problem:
+        """The same wall with other friction (m,) in its joints, which springs in them have too."""
+        return replace(self, law=self.law.with_friction(friction), assembly=replace(self.assembly, friction=friction))
 
     def from_mechanism(self, mechanism: FloatArray) -> FloatArray:
         """(3n,) scaled velocities of block velocities (n_blocks, 3)."""

@@ -14,7 +14,7 @@ any size.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -34,13 +34,7 @@ def with_reduced_friction(problem: Problem, factor: float) -> Problem | None:
     if not unloaded.any():
         return None
     friction = np.minimum(problem.friction, _ROUGHEST)
-    return replace(problem, law=problem.law.with_friction(np.where(unloaded, factor * friction, friction)))
-
-
-def _with_friction(problem: Problem, friction: FloatArray) -> Problem:
-    """The wall with other friction, which springs in its joints have too."""
-    assembly = replace(problem.assembly, friction=friction)
-    return replace(problem, law=problem.law.with_friction(friction), assembly=assembly)
+    return problem.with_friction(np.where(unloaded, factor * friction, friction))
 
 
 @dataclass(frozen=True)
@@ -70,7 +64,7 @@ class FrictionContinuation:
         for friction in self._steps(search):
             if not search.budget.steps_left(search.record.known):
                 break
-            step = search.varied(_with_friction(search.problem, friction))
+            step = search.varied(search.problem.with_friction(friction))
             found = step.interior()
             states = [] if found is None else [found]
             if below is not None:

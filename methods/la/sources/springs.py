@@ -148,7 +148,7 @@ class LowPrestress:
         problem = search.problem
         if problem.n_interfaces > self.one_path and problem.law.is_cone:
             yield partial(_from_central_forces, search, search.choices.spring_ratios[0])
-        yield partial(_from_gravity, search, search.gravity, problem.unit_multiplier)
+        yield from FromGravity().starts(search)
         if problem.n_interfaces > self.one_path or not problem.law.is_cone:
             return
         if problem.n_interfaces > self.vertices_up_to:
@@ -200,8 +200,11 @@ class FromGravity:
 
     def states(self, search: Search) -> Iterator[CollapseState]:
         """One state, if the path ends in one."""
-        start = partial(_from_gravity, search, search.gravity, search.problem.unit_multiplier)
-        yield from (state for _, state in _ends(search, iter([start])))
+        yield from (state for _, state in _ends(search, self.starts(search)))
+
+    def starts(self, search: Search) -> Iterator[Start]:
+        """The beginning of the path."""
+        yield partial(_from_gravity, search, search.gravity, search.problem.unit_multiplier)
 
 
 @dataclass(frozen=True)

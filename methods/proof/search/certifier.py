@@ -50,10 +50,8 @@ class _Passages(ABC):
     def has_room(self, processes: int = 1) -> bool:
         """Whether what these find in one window each fits into it: at most two passages as large as any before."""
         shares = [each.share for each in self.kept()]
-        shallow = (
-            2 * self.depth() + 10 <= MOST_NESTED
-        )  # A division has two levels; what stands beside it, fewer than ten.
-        return shallow and sum(shares) + 2 * processes * max(shares, default=0.0) <= 1.0
+        levels = 2 * self.depth() + 10  # two a division, and fewer than ten for all else
+        return levels <= MOST_NESTED and sum(shares) + 2 * processes * max(shares, default=0.0) <= 1.0
 
 
 class Certifier(_Passages):
