@@ -192,13 +192,13 @@ def test_what_is_proved_of_the_component_that_fails_is_not_said_of_a_wall_with_a
 
 @pytest.mark.parametrize(
     ("limit", "most"),
-    [("document.MOST_BYTES", 60_000), ("document.MOST_BYTES", 120_000), ("document.MOST_VALUES", 20_000)],
+    [("MOST_BYTES", 60_000), ("MOST_BYTES", 120_000), ("MOST_VALUES", 20_000)],
 )
 def test_the_search_ends_before_its_certificate_is_larger_than_is_checked(
     limit: str, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem = make_problem(small_wall(10))
-    monkeypatch.setattr(f"methods.proof.verify.{limit}", most)
+    monkeypatch.setattr(documents, limit, most)
     found, document = certified_bracket(problem, IRREGULAR, np.zeros((12, 3)), 60.0)
     assert found.stopped is Stop.SPACE
     read = documents.read(json.dumps(document).encode())
@@ -209,9 +209,9 @@ def test_the_search_ends_before_its_certificate_is_nested_deeper_than_is_read(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     problem = make_problem(small_wall(10))
-    certifier, levels = certifier_of(problem), 10
-    monkeypatch.setattr("methods.proof.search.certifier.MOST_NESTED", levels + 4)  # two divisions
-    monkeypatch.setattr("drystone.certificates.MOST_NESTED", levels + 4)
+    certifier, levels = certifier_of(problem), 14  # of two divisions
+    monkeypatch.setattr("methods.proof.search.certifier.MOST_NESTED", levels)
+    monkeypatch.setattr("drystone.certificates.MOST_NESTED", levels)
     found = in_cases(problem, IRREGULAR / problem.unit_multiplier, certify=certifier)
     assert 0 < found.branches <= 3
     assert not found.closed
