@@ -29,7 +29,7 @@ from harness.model.result import Result, Verdict
 from harness.model.writing import write_whole
 from methods.proof.same_wall import require_same_wall
 from methods.proof.verify.checker import SECONDS, verify
-from methods.proof.verify.document import FORMAT, MOST_BYTES, MOST_NESTED, MOST_VALUES, unpacked
+from methods.proof.verify.document import FORMAT, MOST_BYTES, MOST_NESTED, MOST_VALUES, unpacked, written
 from methods.proof.verify.exact_wall import CertificateError, number
 
 CERTIFICATE = "certificate.json"
@@ -94,7 +94,7 @@ def write_certificate(path: Path, document: dict[str, Any]) -> None:
     if path.suffix == PACKED:
         write_whole(path, gzip.compress(json.dumps(document, separators=(",", ":")).encode(), mtime=0))
     else:
-        write_whole(path, json.dumps(document, indent=None if "windows" in document else 1))
+        write_whole(path, written(document))
 
 
 def proved(document: Any) -> str:

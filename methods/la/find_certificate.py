@@ -25,7 +25,7 @@ from methods.la.sources.search import Search
 from methods.proof.search.options import PROVED, ProofOptions
 from methods.proof.search.window_search import Bracket
 from methods.proof.tree.certificate import tree_certificate
-from methods.proof.verify.document import share_of_largest
+from methods.proof.verify.document import share_of_largest, written
 
 
 def certificate(
@@ -57,7 +57,7 @@ def certificate(
         return None
     least = proof.state.multiplier * problem.unit_multiplier, proof.state.moving
     document = tree_certificate(assembly, problem.unit_force, least, proof.leaves, end)
-    return None if document is None or share_of_largest(document) > 1.0 else document
+    return None if document is None or share_of_largest(written(document)) > 1.0 else document
 
 
 def _state_of(search: Search, mechanism: FloatArray) -> CollapseState | None:

@@ -42,6 +42,7 @@ LARGE: dict[str, tuple[bytes, str]] = {
     "many objects": (gzip.compress(b"[" + b"{}," * documents.MOST_OBJECTS + b"{}]"), "objects"),
     "a long number": (b'{"bound": ' + b"1" * 5000 + b"}", "digits"),
     "deep lists": (b"[" * 100_000 + b"]" * 100_000, ""),
+    "another part": (gzip.compress(b"{}") + gzip.compress(b"{}"), "follows the end"),
     "cut short": (gzip.compress(b"{}")[:-5], "cut short"),
     "no gzip": (b"\x1f\x8bnothing", "unpacked"),
     "a name twice": (b'{"bound": "1", "bound": "2"}', "twice"),

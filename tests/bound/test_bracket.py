@@ -22,6 +22,7 @@ from methods.la.bounds import BoundedLimitAnalysis
 from methods.la.certify.window_certificate import certificate_of, certified_bracket, certifier_of, equations_of
 from methods.la.core.newton_matrix import NewtonMatrix
 from methods.la.core.problem import Problem, make_problem
+from methods.la.find_certificate import certificate
 from methods.la.search import LimitAnalysis
 from methods.la.settings import BoundSettings, SearchSettings
 from methods.la.sources.budget import SearchLimits
@@ -229,3 +230,31 @@ def test_a_certificate_of_many_divisions_is_read(tmp_path: Path) -> None:
     document = {"format": FORMAT, "windows": [], "cases": node}
     write_certificate(tmp_path / "certificate.json", document)
     assert read_certificate(tmp_path / "certificate.json") == document
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize(("limit", "most"), [("MOST_OBJECTS", 150), ("MOST_VALUES", 60_000), ("MOST_BYTES", 400_000)])
+def test_a_search_that_divides_its_states_ends_before_its_certificate_is_larger_than_is_checked(
+    jobs: int, limit: str, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Divisions and the wall itself hold objects as well: they were not counted.
+    problem = make_problem(small_wall(10))
+    monkeypatch.setattr(documents, limit, most)
+    certifier = certifier_of(problem)
+    found = in_cases(problem, IRREGULAR / problem.unit_multiplier, certify=certifier, jobs=jobs)
+    assert found.branches > 0
+    assert not found.closed
+    document = certificate_of(problem, IRREGULAR, np.zeros((12, 3)), certifier)
+    assert document is not None
+    assert verify(documents.read(documents.written(document).encode()))[0] > 0
+
+
+def test_a_certificate_of_a_tree_is_as_large_as_it_is_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    # It was measured on one line, and written on a line for each number.
+    wall = column([0.5, 0.4, 0.6], [0.3, 0.5, 0.2], 0.55)
+    document = certificate(wall)
+    assert document is not None
+    monkeypatch.setattr(documents, "MOST_BYTES", len(documents.written(document)))
+    assert certificate(wall) == document
+    monkeypatch.setattr(documents, "MOST_BYTES", len(documents.written(document)) - 1)
+    assert certificate(wall) is None

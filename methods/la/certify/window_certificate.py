@@ -18,7 +18,6 @@ from methods.proof.search.window_document import Scales
 from methods.proof.search.window_search import Bracket
 from methods.proof.tree.certificate import wall_document, with_state
 from methods.proof.verify.document import digest
-from methods.proof.verify.exact_wall import ExactWall
 
 
 def equations_of(problem: Problem, jobs: int = 1) -> Equations:
@@ -49,8 +48,7 @@ def certified_bracket(
 
 def certifier_of(problem: Problem) -> Certifier:
     """What keeps the certificate of a search for the bracket of a problem."""
-    wall = ExactWall(wall_document(problem.assembly, problem.unit_force))
-    return Certifier(wall, _scales_of(problem), equations_of(problem))
+    return Certifier(wall_document(problem.assembly, problem.unit_force), _scales_of(problem), equations_of(problem))
 
 
 def certificate_of(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -33,7 +34,7 @@ class _Passage(NamedTuple):
 
 
 def _passage(content: dict[str, Any]) -> _Passage:
-    return _Passage(content, share_of_largest(content))
+    return _Passage(content, share_of_largest(json.dumps(content)))
 
 
 class _Passages(ABC):
@@ -48,17 +49,17 @@ class _Passages(ABC):
         """How often its states are divided, and divided again."""
 
     def has_room(self, processes: int = 1) -> bool:
-        """Whether what these find in one window each fits into it: at most two passages as large as any before."""
+        """Whether two passages as large as any fit, from a window of each, and one more for a collapse state."""
         shares = [each.share for each in self.kept()]
         levels = 2 * self.depth() + 10  # two a division, and fewer than ten for all else
-        return levels <= MOST_NESTED and sum(shares) + 2 * processes * max(shares, default=0.0) <= 1.0
+        return levels <= MOST_NESTED and sum(shares) + (2 * processes + 1) * max(shares) <= 1.0
 
 
 class Certifier(_Passages):
     """The documents of windows as a bracket goes up, asked after each.
 
     Args:
-        wall: of the certificate.
+        wall: of the certificate, as it stands there.
         scales: from the search to it.
         equations: of the search.
 
@@ -67,8 +68,9 @@ class Certifier(_Passages):
         refused: why there is no document of the last window; empty where there is.
     """
 
-    def __init__(self, wall: ExactWall, scales: Scales, equations: Equations) -> None:
-        self.wall, self.scales = wall, scales
+    def __init__(self, wall: dict[str, Any], scales: Scales, equations: Equations) -> None:
+        self.wall, self.scales = ExactWall(wall), scales
+        self._wall = _passage(wall)
         self._windows: list[_Passage] = []
         self.cases: _CaseCertifier | None = None
         self.refused = ""
@@ -82,8 +84,8 @@ class Certifier(_Passages):
         return [each.content for each in self._windows]
 
     def kept(self) -> list[_Passage]:
-        """Windows, and the steps of cases."""
-        return self._windows + ([] if self.cases is None else self.cases.kept())
+        """The wall, windows, and cases."""
+        return [self._wall, *self._windows, *([] if self.cases is None else self.cases.kept())]
 
     def depth(self) -> int:
         """How often the states of the last window are divided."""
@@ -162,8 +164,9 @@ class _CaseCertifier(_Passages):
         return min(halves) if len(halves) == 2 else self._states.low
 
     def kept(self) -> list[_Passage]:
-        """The steps of this node and of all below it."""
-        return self._steps + [each for half in self._halves.values() for each in half.kept()]
+        """This node, its steps, and all below it."""
+        node = _passage(self._at | {"parts": [], "steps": []})
+        return [node, *self._steps, *(each for half in self._halves.values() for each in half.kept())]
 
     def depth(self) -> int:
         """How often the states of this node are divided, and divided again."""

@@ -37,6 +37,8 @@ def unpacked(content: bytes) -> bytes:
             raise CertificateError(f"it cannot be unpacked ({error})") from None
         if not unpacker.eof and len(content) <= MOST_BYTES:
             raise CertificateError("it is cut short")
+        if unpacker.unused_data:
+            raise CertificateError("something follows the end of what is packed in it")
     if len(content) > MOST_BYTES:
         raise CertificateError(f"it has more than {MOST_BYTES:,} bytes, unpacked")
     if _values(content) > MOST_VALUES:
@@ -68,9 +70,14 @@ def read(content: bytes) -> Any:
         raise CertificateError(f"it is not readable JSON ({error})") from None
 
 
-def share_of_largest(document: Any) -> float:
-    """How much of the largest certificate that is checked this part of one takes."""
-    content = json.dumps(document).encode()
+def written(document: dict[str, Any]) -> str:
+    """The text of a certificate: on a line where it is of windows, which hold long lists of numbers."""
+    return json.dumps(document, indent=None if "windows" in document else 1)
+
+
+def share_of_largest(text: str) -> float:
+    """How much of the largest certificate that is checked this text of one, or of a part of one, takes."""
+    content = text.encode()
     return max(len(content) / MOST_BYTES, _values(content) / MOST_VALUES, content.count(b"{") / MOST_OBJECTS)
 
 
